@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// What integrators hand to the film: a tile of pixels with sums over camera samples.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/ray_counts.hpp"
+#include "base/vec.hpp"
+#include "relumine/image.hpp"
+
+namespace relumine {
+
+/// Radiance towards the camera by the number of scattering vertices behind the specular prefix: none, one, more.
+struct SplitRadiance {
+    Spectrum emission, direct, indirect;
+
+    [[nodiscard]] Spectrum total() const { return emission + direct + indirect; }
+};
+
+/// What is seen first through a camera sample; all zero where nothing is hit.
+struct FirstSurface {
+    Spectrum albedo;
+    Vec3 normal;            // shading normal, world space, on the viewer's side
+    Vec3 position;          // world space
+    float depth = 0;        // metres along the camera ray
+    float material_id = 0;  // index + 1; 0: nothing
+};
+
+/// Sums over the samples of one pixel.
+struct PixelSums {
+    Spectrum radiance, radiance_squared;
+    SplitRadiance split;
+    Spectrum albedo;
+    Vec3 normal;
+    FirstSurface first;  // of sample 0 alone: positions and ids have no mean
+    std::uint32_t samples = 0;
+};
+
+struct NonFiniteSample {
+    int x = 0, y = 0;  // full frame
+    std::uint32_t sample = 0;
+};
+
+/// Sums for the samples [first_sample, first_sample + sample_count) of all pixels of `rect`.
+struct Tile {
+    PixelRect rect;  // full-frame pixels, clipped to the crop
+    std::uint32_t first_sample = 0, sample_count = 0;
+    std::vector<PixelSums> pixels;  // row-major over rect
+    RayCounts rays;
+    std::uint64_t non_finite = 0;   // samples dropped
+    std::optional<NonFiniteSample> first_non_finite;
+
+    /// Adds a sample to its pixel, or drops it where the radiance is not finite.
+    void add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance, const FirstSurface& surface);
+};
+
+/// An empty tile over `rect`.
+[[nodiscard]] Tile make_tile(const PixelRect& rect, std::uint32_t first_sample, std::uint32_t sample_count);
+
+}  // namespace relumine
