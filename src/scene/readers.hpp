@@ -11,11 +11,13 @@ namespace relumine {
 /// glTF 2.0, `.gltf` or `.glb`. Throws SceneError or ImageError.
 [[nodiscard]] SceneData read_gltf(const std::string& path);
 
-/// A mesh alone, without material, camera or light. Polygons are cut into triangles. Throws SceneError.
-[[nodiscard]] Mesh read_ply(const std::string& path);
-[[nodiscard]] Mesh read_obj(const std::string& path);
+/// A mesh alone, without material, camera or light; polygons are cut into triangles. The file may be packed
+/// with gzip. What was left out is added to `warnings`. Throws SceneError or FileError.
+[[nodiscard]] Mesh read_ply(const std::string& path, std::vector<std::string>& warnings);
+[[nodiscard]] Mesh read_obj(const std::string& path, std::vector<std::string>& warnings);
 
-/// Lat-long `.exr`, `.hdr`, `.pfm`. Negative or non-finite texels become 0 and are counted in a warning. Throws ImageError.
+/// Lat-long `.exr`, `.hdr`, `.pfm`. Negative or non-finite texels become 0 and are counted in a warning.
+/// Throws ImageError.
 [[nodiscard]] Environment read_environment(const std::string& path, std::vector<std::string>& warnings);
 
 }  // namespace relumine

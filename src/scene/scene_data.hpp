@@ -28,10 +28,10 @@ enum class Wrap : std::uint8_t { repeat, mirror, clamp };
 /// How a material reads an image: which coordinates, how they are transformed and wrapped.
 struct TextureRef {
     ImageId image{};
-    int uv_set = 0;                                      // 0 or 1
-    std::array<float, 6> uv_transform{1, 0, 0, 0, 1, 0};  // rows of a 2 × 3 matrix: uv' = A·uv + b; v grows downwards
+    int uv_set = 0;                                       // 0 or 1
+    std::array<float, 6> uv_transform{1, 0, 0, 0, 1, 0};  // rows of 2 × 3: uv' = A·uv + b; v grows downwards
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    bool nearest = false;                                // no interpolation
+    bool nearest = false;  // no interpolation
 };
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
@@ -46,20 +46,20 @@ struct Material {
     std::optional<TextureRef> metallic_roughness_texture;  // B, G; linear
     std::optional<TextureRef> normal_texture;              // tangent space, linear
     float normal_scale = 1;
-    Spectrum emission;  // radiance, W·sr⁻¹·m⁻², emissive strength included
+    Spectrum emission;                           // radiance, W·sr⁻¹·m⁻², emissive strength included
     std::optional<TextureRef> emission_texture;  // RGB, sRGB
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;
-    bool double_sided = false;  // whether the back emits; both sides reflect
-    float ior = 1.5f;           // ≥ 1
-    float specular = 1;         // KHR_materials_specular; 0 removes the dielectric's coat
+    bool double_sided = false;                   // whether the back emits; both sides reflect
+    float ior = 1.5f;                            // ≥ 1
+    float specular = 1;                          // KHR_materials_specular; 0 removes the dielectric's coat
     std::optional<TextureRef> specular_texture;  // A
     Spectrum specular_color{1};
     std::optional<TextureRef> specular_color_texture;  // RGB, sRGB
     float transmission = 0;
     std::optional<TextureRef> transmission_texture;  // R
-    bool solid = false;  // KHR_materials_volume with thickness > 0: refracts; else a thin sheet
-    Spectrum attenuation_color{1};           // of light that went attenuation_distance through a solid
+    bool solid = false;             // KHR_materials_volume with thickness > 0: refracts; else a thin sheet
+    Spectrum attenuation_color{1};  // of light that went attenuation_distance through a solid
     float attenuation_distance = infinity;  // metres
 };
 
@@ -67,14 +67,15 @@ struct Triangle {
     std::array<std::uint32_t, 3> vertex;
 };
 
-/// Triangles of one material in object space (in world space where the mesh has one instance: see finish_scene).
+/// Triangles of one material in object space (in world space where the mesh has one instance: see
+/// finish_scene).
 struct Mesh {
     std::string name;
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;                 // unit, per vertex; empty: flat shading
     std::vector<Vec4> tangents;                // xyz unit, w = handedness ±1, per vertex; may be empty
     std::array<std::vector<Vec2>, 2> uvs;      // per vertex; may be empty; v grows downwards
-    std::vector<std::array<float, 4>> colors;  // linear RGBA multiplying base colour, per vertex; may be empty
+    std::vector<std::array<float, 4>> colors;  // linear RGBA times base colour, per vertex; may be empty
     std::vector<Triangle> triangles;
     MaterialId material{};
 };
@@ -100,7 +101,8 @@ struct DirectionalLight {
     Spectrum irradiance;  // W·m⁻² on a surface that faces it
 };
 
-/// Light from infinity: lat-long radiance, u = atan2(z, x)/2π + ½, v = acos(y)/π, row 0 up, bilinear between texel centres.
+/// Light from infinity: lat-long radiance, u = atan2(z, x)/2π + ½, v = acos(y)/π, row 0 up, bilinear between
+/// texel centres.
 struct Environment {
     int width = 0, height = 0;
     std::vector<Spectrum> radiance;  // row-major, ≥ 0, finite, scale included
@@ -109,10 +111,10 @@ struct Environment {
 
 struct Camera {
     std::string name;
-    Transform world_from_camera;      // looks along −Z, +Y up
+    Transform world_from_camera;  // looks along −Z, +Y up
     bool orthographic = false;
-    double vertical_extent = 0.7;     // field of view in radians, or full height in metres if orthographic
-    double aspect = 0;                // width / height; 0: as the picture's
+    double vertical_extent = 0.7;  // field of view in radians, or full height in metres if orthographic
+    double aspect = 0;             // width / height; 0: as the picture's
 };
 
 /// Everything. Readers fill it, `finish_scene` validates it; nothing changes it afterwards.

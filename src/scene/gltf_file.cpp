@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a glTF file and its buffers. TinyGLTF 2.7 reads beyond buffers for images, cuts integers to 32 bits
+// and opens any path, so it gets no images, no buffers, no file access, and a document that holds nothing but
+// checked values.
+#include "scene/gltf_file.hpp"
+
+#include <fmt/format.h>
+
+#include "base/message.hpp"
+#include "relumine/error.hpp"
+#include "scene/gltf_document.hpp"
+#include "scene/quote.hpp"
+#include "scene/reference.hpp"
+
+namespace relumine {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t max_referenced_bytes = std::size_t{8} << 30;  // all buffers together
+
+/// The bytes of buffer `i`, cut to its byteLength.
+std::span<const std::uint8_t> load_buffer(GltfFile& file, const json& buffer, std::size_t i) {
+    const std::string place = fmt::format("buffers[{}]", i);
+    std::span<const std::uint8_t> bytes;
+    if (buffer.contains("uri")) {
+        const auto& uri = buffer["uri"].get_ref<const std::string&>();
+        file.loaded.push_back(read_reference(uri, folder_of(file.path), file.where(place + ".uri")));
+        bytes = file.loaded.back();
+    } else if (i == 0 && file.container.binary) {
+        bytes = *file.container.binary;
+    } else {
+        throw SceneError{expected_found(file.where(place + ".uri"), "a value", "nothing")};
+    }
+    const auto length = buffer["byteLength"].get<std::size_t>();
+    if (length > bytes.size())
+        throw SceneError{expected_found(file.where(place + ".byteLength"),
+                                        fmt::format("at most {}, what the buffer holds", bytes.size()),
+                                        fmt::format("{}", length))};
+    return bytes.first(length);
+}
+
+void load_buffers(GltfFile& file, const json& buffers) {
+    std::size_t total = 0;
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        const std::size_t loaded_before = file.loaded.size();
+        file.buffers.push_back(load_buffer(file, buffers[i], i));
+        if (file.loaded.size() > loaded_before) total += file.loaded.back().size();
+        if (total > max_referenced_bytes)
+            throw SceneError{expected_found(file.where("buffers"),
+                                            fmt::format("at most {} bytes", max_referenced_bytes), "more")};
+    }
+}
+
+void load_images(GltfFile& file, const json& images) {
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        tinygltf::Image image;
+        image.name = images[i].value("name", "");
+        image.uri = images[i].value("uri", "");
+        image.bufferView = images[i].value("bufferView", -1);
+        if (image.uri.empty() == (image.bufferView < 0))
+            throw SceneError{expected_found(file.where(fmt::format("images[{}]", i)),
+                                            "either uri or bufferView",
+                                            image.uri.empty() ? "none of them" : "both")};
+        file.model.images.push_back(std::move(image));
+    }
+}
+
+void check_buffer_views(const GltfFile& file) {
+    for (std::size_t i = 0; i < file.model.bufferViews.size(); ++i) {
+        const auto& view = file.model.bufferViews[i];
+        const std::size_t size = file.buffers[to_size(view.buffer)].size();
+        const std::string place = fmt::format("bufferViews[{}]", i);
+        if (view.byteOffset > size)
+            throw SceneError{expected_found(file.where(place + ".byteOffset"),
+                                            fmt::format("at most {}", size),
+                                            fmt::format("{}", view.byteOffset))};
+        if (view.byteLength > size - view.byteOffset)
+            throw SceneError{expected_found(file.where(place + ".byteLength"),
+                                            fmt::format("at most {}", size - view.byteOffset),
+                                            fmt::format("{}", view.byteLength))};
+    }
+}
+
+/// The message's first line.
+std::string first_line(const std::string& text) { return quote(text.substr(0, text.find('\n'))); }
+
+tinygltf::Model parse_model(const json& document, const std::string& path) {
+    tinygltf::TinyGLTF parser;
+    parser.SetFsCallbacks({nullptr, nullptr, nullptr, nullptr, nullptr});
+    tinygltf::Model model;
+    std::string error, warning;
+    const std::string text = document.dump();
+    const auto length = static_cast<unsigned>(text.size());
+    if (!parser.LoadASCIIFromString(&model, &error, &warning, text.data(), length, "") || !error.empty())
+        throw SceneError{expected_found(path, "a valid glTF document", first_line(error))};
+    return model;
+}
+
+}  // namespace
+
+GltfFile read_gltf_file(const std::string& path) {
+    GltfFile file;
+    file.path = path;
+    file.container = read_gltf_container(path);
+    json document = read_gltf_document(file.container.json, path, file.warnings);
+    const json buffers = document.value("buffers", json::array());
+    const json images = document.value("images", json::array());
+    document.erase("buffers");
+    document.erase("images");
+    file.model = parse_model(document, path);
+    load_buffers(file, buffers);
+    load_images(file, images);
+    check_buffer_views(file);
+    return file;
+}
+
+std::span<const std::uint8_t> view_bytes(const GltfFile& file, int buffer_view) {
+    const auto& view = file.model.bufferViews[to_size(buffer_view)];
+    return file.buffers[to_size(view.buffer)].subspan(view.byteOffset, view.byteLength);
+}
+
+}  // namespace relumine
