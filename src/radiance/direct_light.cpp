@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Direct light by sampling the lights.
+#include "radiance/direct_light.hpp"
+
+#include "shading/sampling.hpp"
+
+namespace relumine {
+
+bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light, std::uint32_t opacity_seed, RayCounts& rays) {
+    rays.add(RayPurpose::shadow);
+    Ray ray{ray_origin(point, light.w_in), light.w_in, infinity, opacity_seed};
+    if (std::isfinite(light.distance)) {
+        const Vec3 way = light.target - ray.origin;
+        ray.t_max = length(way);
+        if (!(ray.t_max > 0)) return false;
+        ray.direction = {way / ray.t_max};
+    }
+    return t.tracer.occluded(ray);
+}
+
+Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
+    if (!sides_agree(vertex.point, light.w_in)) return {};
+    return eval(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light.w_in)) * light.radiance;
+}
+
+Spectrum sampled_direct_light(const Transport& t, const Vertex& vertex, const SampleStream& stream, std::uint32_t depth,
+                              RayCounts& rays) {
+    const auto light = t.lights.sample(vertex.point.position, stream.next1(Dim::light_choice, depth),
+                                       stream.next2(Dim::light_point, depth));
+    if (!light) return {};
+    const Spectrum reflected = unshadowed(vertex, *light);
+    if (is_black(reflected)) return {};
+    if (in_shadow(t, vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1), rays)) return {};
+    const float weight = light->delta ? 1
+                                      : mis_weight(light->pdf, pdf(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light->w_in)));
+    return reflected * (weight / light->pdf);
+}
+
+Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed, RayCounts& rays) {
+    Spectrum sum;
+    for (const LightSample& light : delta_light_samples(t.scene, vertex.point.position)) {
+        const Spectrum reflected = unshadowed(vertex, light);
+        if (!is_black(reflected) && !in_shadow(t, vertex.point, light, opacity_seed, rays)) sum += reflected;
+    }
+    return sum;
+}
+
+}  // namespace relumine

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light that arrives at a vertex straight from a light source, by sampling the lights.
+#pragma once
+
+#include "base/ray_counts.hpp"
+#include "base/sample_stream.hpp"
+#include "radiance/transport.hpp"
+
+namespace relumine {
+
+/// Whether anything blocks the way from `point` to the light sample.
+[[nodiscard]] bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light, std::uint32_t opacity_seed,
+                             RayCounts& rays);
+
+/// The unshadowed light of a sample that the BSDF sends to the viewer: f·|cos θ|·L, or 0 where the sides disagree.
+[[nodiscard]] Spectrum unshadowed(const Vertex& vertex, const LightSample& light);
+
+/// One sample of the direct light reflected at `vertex`, weighted against BSDF sampling by the power heuristic.
+[[nodiscard]] Spectrum sampled_direct_light(const Transport& t, const Vertex& vertex, const SampleStream& stream,
+                                            std::uint32_t depth, RayCounts& rays);
+
+/// The reflected light of all point, spot and directional lights, a shadow ray each.
+[[nodiscard]] Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed, RayCounts& rays);
+
+}  // namespace relumine

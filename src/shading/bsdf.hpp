@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// How surfaces scatter light: a closed set of models, each with sample, eval and pdf of one convention.
+//
+// Directions are local, unit and point away from the surface; w_out has z > 0: the frame's normal is on the viewer's side.
+// eval and pdf describe what is not a delta lobe; delta lobes are met by sample alone.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "shading/ggx.hpp"
+
+namespace relumine {
+
+struct BsdfSample {
+    LocalDir w_in;
+    Spectrum weight;     // f·|cos θ| / pdf, dimensionless; may exceed 1
+    float pdf = 0;       // per steradian; of delta lobes: the probability of the lobe
+    bool delta = false;  // pdf is a probability, and no other strategy finds this direction
+    float eta = 1;       // index of refraction on w_in's side over the one on w_out's side
+};
+
+struct BsdfRandom {
+    float lobe;        // in [0, 1)
+    Point2 direction;  // in [0, 1)²
+};
+
+/// Diffuse reflection.
+struct Lambert {
+    Spectrum albedo;
+};
+
+/// A perfectly smooth conductor, Fresnel by Schlick.
+struct Mirror {
+    Spectrum f0;
+};
+
+/// A conductor of GGX roughness, Fresnel by Schlick, single scattering.
+struct RoughConductor {
+    Spectrum f0;
+    Ggx ggx;
+};
+
+/// Smooth glass: the boundary of a solid body, or a thin sheet with all its internal reflections, which does not bend light.
+struct SmoothDielectric {
+    float eta = 1.5f;  // index of refraction on the other side over the one on the viewer's side
+    Spectrum tint{1};  // of transmitted light
+    bool thin = false;
+};
+
+/// Glass of GGX roughness [Walter07]; `thin` mirrors the reflected lobe to the other side.
+struct RoughDielectric {
+    float eta = 1.5f;
+    Spectrum tint{1};
+    bool thin = false;
+    Ggx ggx;
+};
+
+/// glTF's opaque layering: a dielectric coat over a diffuse base, mixed with a metal of the same roughness [glTF 2.0, appendix B].
+struct MetallicRoughness {
+    Spectrum diffuse;                     // albedo under the coat
+    Spectrum coat_f0, coat_f90;           // of the coat: what it reflects, the base does not get
+    Spectrum specular_f0, specular_f90;   // of coat and metal together, weighted
+    Ggx ggx;
+    bool smooth = false;                  // the specular lobe is a delta
+};
+
+using Bsdf = std::variant<Lambert, Mirror, RoughConductor, SmoothDielectric, RoughDielectric, MetallicRoughness>;
+
+#define RELUMINE_DECLARE_BSDF(Model)                                                                              \
+    [[nodiscard]] Spectrum eval(const Model&, LocalDir w_out, LocalDir w_in); /* f·|cos θ|, 1/sr */                \
+    [[nodiscard]] float pdf(const Model&, LocalDir w_out, LocalDir w_in);     /* 1/sr; 0 where sample never goes */ \
+    [[nodiscard]] std::optional<BsdfSample> sample(const Model&, LocalDir w_out, BsdfRandom u); /* empty: absorbed */
+
+RELUMINE_DECLARE_BSDF(Lambert)
+RELUMINE_DECLARE_BSDF(Mirror)
+RELUMINE_DECLARE_BSDF(RoughConductor)
+RELUMINE_DECLARE_BSDF(SmoothDielectric)
+RELUMINE_DECLARE_BSDF(RoughDielectric)
+RELUMINE_DECLARE_BSDF(MetallicRoughness)
+#undef RELUMINE_DECLARE_BSDF
+
+inline Spectrum eval(const Bsdf& bsdf, LocalDir w_out, LocalDir w_in) {
+    return std::visit([&](const auto& b) { return eval(b, w_out, w_in); }, bsdf);
+}
+inline float pdf(const Bsdf& bsdf, LocalDir w_out, LocalDir w_in) {
+    return std::visit([&](const auto& b) { return pdf(b, w_out, w_in); }, bsdf);
+}
+inline std::optional<BsdfSample> sample(const Bsdf& bsdf, LocalDir w_out, BsdfRandom u) {
+    return std::visit([&](const auto& b) { return sample(b, w_out, u); }, bsdf);
+}
+
+/// Whether the BSDF is nothing but delta lobes, so that light sampling finds nothing.
+inline bool is_delta(const Bsdf& bsdf) {
+    return std::holds_alternative<Mirror>(bsdf) || std::holds_alternative<SmoothDielectric>(bsdf);
+}
+
+/// The probability with which `sample` draws a delta lobe of a BSDF that may have others.
+[[nodiscard]] float delta_probability(const Bsdf& bsdf, LocalDir w_out);
+
+/// What is left of a BSDF that is not all delta when its delta lobe is taken away.
+[[nodiscard]] Bsdf without_delta(const Bsdf& bsdf);
+
+/// An approximation of the share of light that is reflected or transmitted at normal incidence, for the albedo layer.
+[[nodiscard]] Spectrum albedo(const Bsdf& bsdf);
+
+/// Fresnel reflectance of unpolarised light at a dielectric; `eta` as above, `cosine` ≥ 0 on the incident side.
+[[nodiscard]] float fresnel_dielectric(float cosine, float eta);
+
+}  // namespace relumine

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every BSDF: sample follows pdf, weight is f·cos/pdf, energy, reciprocity, white furnaces.
+#include "shading/bsdf.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string_view>
+
+#include "base/sample_stream.hpp"
+#include "shading/sampling.hpp"
+#include "tests/statistics.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr int draws = 400'000;
+constexpr int theta_cells = 40, phi_cells = 40;
+
+LocalDir direction(float cosine, float phi) {
+    const float sine = std::sqrt(1 - sqr(cosine));
+    return {{sine * std::cos(phi), sine * std::sin(phi), cosine}};
+}
+
+Ggx ggx(float alpha) { return {alpha, Masking::correlated}; }
+
+struct NamedBsdf {
+    const char* name;
+    Bsdf bsdf;
+};
+
+const std::vector<NamedBsdf>& rough_bsdfs() {
+    static const std::vector<NamedBsdf> all{
+        {"lambert", Lambert{Spectrum{0.8f}}},
+        {"conductor .09", RoughConductor{Spectrum{0.9f}, ggx(0.09f)}},
+        {"conductor .3", RoughConductor{Spectrum{0.9f, 0.6f, 0.3f}, ggx(0.3f)}},
+        {"conductor 1", RoughConductor{Spectrum{1}, ggx(1)}},
+        {"conductor separable", RoughConductor{Spectrum{1}, {0.5f, Masking::separable}}},
+        {"dielectric into", RoughDielectric{1.5f, Spectrum{1}, false, ggx(0.2f)}},
+        {"dielectric out of", RoughDielectric{1 / 1.5f, Spectrum{1}, false, ggx(0.4f)}},
+        {"dielectric thin", RoughDielectric{1.5f, Spectrum{0.9f}, true, ggx(0.3f)}},
+        {"layered", MetallicRoughness{Spectrum{0.5f}, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, ggx(0.25f)}},
+        {"layered metal", MetallicRoughness{Spectrum{0.3f}, Spectrum{0}, Spectrum{0}, Spectrum{0.4f}, Spectrum{0.5f}, ggx(0.2f)}},
+    };
+    return all;
+}
+
+constexpr std::array view_cosines{0.98f, 0.6f, 0.15f};
+
+BsdfRandom random_numbers(std::uint64_t seed, std::uint32_t i) {
+    const SampleStream stream{seed, i, 1, PointSet::independent};
+    return {stream.next1(Dim::lobe), stream.next2(Dim::direction)};
+}
+
+using Density = std::function<double(LocalDir)>;
+using Sampler = std::function<std::optional<LocalDir>(BsdfRandom)>;
+
+/// ∫ density over a cell of θ × φ, by the midpoint rule on a grid within the cell.
+double cell_integral(const Density& density, int theta, int phi) {
+    constexpr int fine = 12;
+    const double dtheta = 3.14159265358979 / (theta_cells * fine), dphi = 2 * 3.14159265358979 / (phi_cells * fine);
+    double sum = 0;
+    for (int i = 0; i < fine; ++i)
+        for (int j = 0; j < fine; ++j) {
+            const double t = (theta * fine + i + 0.5) * dtheta, p = (phi * fine + j + 0.5) * dphi;
+            const double x = std::sin(t) * std::cos(p), y = std::sin(t) * std::sin(p), z = std::cos(t);
+            sum += std::sin(t) * density({{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}});
+        }
+    return sum * dtheta * dphi;
+}
+
+/// χ² of `draws` samples over the sphere against a density; what is absorbed is a cell of its own.
+double chi_square(const Sampler& sampler, const Density& density) {
+    std::vector<double> observed(theta_cells * phi_cells + 1), expected(observed.size());
+    for (std::uint32_t i = 0; i < draws; ++i) {
+        const auto w = sampler(random_numbers(1, i));
+        if (!w) {
+            ++observed.back();
+            continue;
+        }
+        double phi = std::atan2(w->v.y, w->v.x) / (2 * 3.14159265358979);
+        if (phi < 0) phi += 1;
+        const double theta = std::acos(std::clamp(double{w->v.z}, -1.0, 1.0)) / 3.14159265358979;
+        const int t = std::clamp(static_cast<int>(theta * theta_cells), 0, theta_cells - 1);
+        const int p = std::clamp(static_cast<int>(phi * phi_cells), 0, phi_cells - 1);
+        ++observed[static_cast<std::size_t>(t * phi_cells + p)];
+    }
+    double total = 0;
+    for (int t = 0; t < theta_cells; ++t)
+        for (int p = 0; p < phi_cells; ++p)
+            total += expected[static_cast<std::size_t>(t * phi_cells + p)] = draws * cell_integral(density, t, p);
+    expected.back() = std::max(0.0, draws - total);
+    return testing::chi_square_p(observed, expected);
+}
+
+Sampler sampler_of(const Bsdf& bsdf, LocalDir w_out) {
+    return [=](BsdfRandom u) -> std::optional<LocalDir> {
+        const auto s = sample(bsdf, w_out, u);
+        return s ? std::optional(s->w_in) : std::nullopt;
+    };
+}
+
+Density density_of(const Bsdf& bsdf, LocalDir w_out) {
+    return [=](LocalDir w_in) { return double{pdf(bsdf, w_out, w_in)}; };
+}
+
+TEST(Bsdf, SamplesFollowThePdf) {  // χ², α = 1e-6 in all
+    const double level = testing::sidak(1e-6, static_cast<double>(rough_bsdfs().size() * view_cosines.size()));
+    for (const auto& [name, bsdf] : rough_bsdfs())
+        for (const float cosine : view_cosines) {
+            const LocalDir w_out = direction(cosine, 0.7f);
+            EXPECT_GT(chi_square(sampler_of(bsdf, w_out), density_of(bsdf, w_out)), level) << name << " at " << cosine;
+        }
+}
+
+TEST(Bsdf, ChiSquareCatchesWrongSamplers) {
+    const Sampler uniform = [](BsdfRandom u) { return std::optional(direction(u.direction.x, 2 * pi * u.direction.y)); };
+    EXPECT_LT(chi_square(uniform, density_of(Lambert{Spectrum{1}}, direction(0.6f, 0))), 1e-6);
+    for (const auto& [name, bsdf] : rough_bsdfs()) {
+        // Neither diffuse reflection nor α = 1 (where bounded sampling is uniform) depends on the view.
+        if (std::string_view(name) == "lambert" || std::string_view(name) == "conductor 1") continue;
+        const LocalDir w_out = direction(0.6f, 0.7f), tilted = direction(std::cos(std::acos(0.6f) + 0.1f), 0.7f);  // 6° off
+        EXPECT_LT(chi_square(sampler_of(bsdf, tilted), density_of(bsdf, w_out)), 1e-6) << name;
+    }
+}
+
+TEST(Bsdf, WeightIsEvalOverPdf) {
+    for (const auto& [name, bsdf] : rough_bsdfs())
+        for (std::uint32_t i = 0; i < 2000; ++i) {
+            const LocalDir w_out = direction(0.05f + 0.9f * unit_float(static_cast<std::uint32_t>(mix(i))), 1);
+            const auto s = sample(bsdf, w_out, random_numbers(2, i));
+            if (!s) continue;
+            EXPECT_FALSE(s->delta);
+            EXPECT_NEAR(s->pdf / pdf(bsdf, w_out, s->w_in), 1, 1e-3) << name;
+            const Spectrum f = eval(bsdf, w_out, s->w_in);
+            EXPECT_NEAR(s->weight.g * s->pdf, f.g, 1e-3 * f.g + 1e-7) << name;
+        }
+}
+
+/// The share of a white environment's light that is reflected or transmitted towards w_out, by sampling.
+testing::Estimate directional_albedo(const Bsdf& bsdf, LocalDir w_out) {
+    std::vector<double> weights;
+    for (std::uint32_t i = 0; i < 100'000; ++i) {
+        const auto s = sample(bsdf, w_out, random_numbers(3, i));
+        weights.push_back(s ? s->weight.r * s->eta * s->eta : 0.0);  // undo the radiance scaling of refraction
+    }
+    return testing::estimate(weights);
+}
+
+TEST(Bsdf, NeverReflectsMoreThanArrives) {
+    for (const auto& [name, bsdf] : rough_bsdfs())
+        for (const float cosine : view_cosines) {
+            const auto [mean, error, count] = directional_albedo(bsdf, direction(cosine, 0));
+            EXPECT_LT(mean, 1 + 5 * error + 1e-4) << name << " at " << cosine;
+            EXPECT_GT(mean, 0.3) << name << " at " << cosine;
+        }
+}
+
+TEST(Bsdf, SamplingAndEvaluationGiveTheSameAlbedo) {
+    for (const auto& [name, bsdf] : rough_bsdfs()) {
+        const LocalDir w_out = direction(0.6f, 0.7f);
+        double integral = 0;
+        const Density f = [&](LocalDir w_in) {
+            const auto eta2 = [&] {
+                const auto* glass = std::get_if<RoughDielectric>(&bsdf);
+                return glass && !glass->thin && w_in.v.z < 0 ? sqr(glass->eta) : 1.0f;
+            };
+            return double{eval(bsdf, w_out, w_in).r} * eta2();
+        };
+        for (int t = 0; t < theta_cells; ++t)
+            for (int p = 0; p < phi_cells; ++p) integral += cell_integral(f, t, p);
+        const auto [mean, error, count] = directional_albedo(bsdf, w_out);
+        EXPECT_NEAR(mean, integral, 5 * error + 2e-3) << name;
+    }
+}
+
+TEST(Bsdf, ReflectionIsReciprocal) {
+    const LocalDir a = direction(0.8f, 0.3f), b = direction(0.35f, 2.1f);
+    for (const auto& [name, bsdf] : rough_bsdfs()) {
+        const float forward = eval(bsdf, a, b).g / cos_theta(b), backward = eval(bsdf, b, a).g / cos_theta(a);
+        EXPECT_NEAR(forward, backward, 1e-4f * forward + 1e-7f) << name;
+    }
+}
+
+TEST(Bsdf, SmoothGlassConservesEnergy) {
+    for (const float eta : {1.5f, 1 / 1.5f, 1.0f})
+        for (const bool thin : {false, true})
+            for (const float cosine : view_cosines) {
+                const auto [mean, error, count] = directional_albedo(SmoothDielectric{eta, Spectrum{1}, thin}, direction(cosine, 0));
+                EXPECT_NEAR(mean, 1, 1e-4 + 0 * error) << eta << " " << cosine;
+            }
+}
+
+TEST(Bsdf, SmoothCoatSplitsIntoDeltaAndDiffuse) {
+    const MetallicRoughness coat{Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, ggx(smooth_alpha), true};
+    const LocalDir w_out = direction(0.7f, 0);
+    double delta = 0, diffuse = 0;
+    constexpr int n = 100'000;
+    for (std::uint32_t i = 0; i < n; ++i)
+        if (const auto s = sample(coat, w_out, random_numbers(4, i))) (s->delta ? delta : diffuse) += s->weight.r / n;
+    EXPECT_NEAR(delta, schlick(Spectrum{0.04f}, Spectrum{1}, 0.7f).r, 2e-3);
+    const double rest = directional_albedo(without_delta(coat), w_out).mean;
+    EXPECT_NEAR(diffuse, rest, 0.01);
+    EXPECT_GT(delta_probability(coat, w_out), 0);
+    EXPECT_EQ(delta_probability(without_delta(coat), w_out), 0);
+}
+
+TEST(Fresnel, MatchesClosedForms) {
+    EXPECT_NEAR(fresnel_dielectric(1, 1.5f), 0.04f, 1e-6f);
+    EXPECT_NEAR(fresnel_dielectric(std::cos(std::atan(1.5f)), 1.5f), 0.5f * sqr((sqr(1.5f) - 1) / (sqr(1.5f) + 1)), 1e-5f);  // Brewster
+    EXPECT_EQ(fresnel_dielectric(0.5f, 1 / 1.5f), 1);  // total reflection
+    EXPECT_NEAR(fresnel_dielectric(0.3f, 1), 0, 1e-6f);
+}
+
+TEST(Refraction, FollowsSnell) {
+    const LocalDir w_out = direction(0.6f, 0.4f);
+    const auto s = sample(SmoothDielectric{1.5f, Spectrum{1}, false}, w_out, {0.99f, {0.5f, 0.5f}});
+    ASSERT_TRUE(s && s->delta);
+    EXPECT_LT(s->w_in.v.z, 0);
+    EXPECT_NEAR(std::hypot(s->w_in.v.x, s->w_in.v.y) * 1.5f, std::hypot(w_out.v.x, w_out.v.y), 1e-5f);
+    EXPECT_NEAR(s->weight.r, 1 / 2.25f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace relumine

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The GGX distribution of microfacet normals: density, masking, and sampling of visible normals.
+#pragma once
+
+#include <cstdint>
+
+#include "base/frame.hpp"
+
+namespace relumine {
+
+/// How masking towards the viewer and shadowing towards the light go together.
+enum class Masking : std::uint8_t { correlated /* by height [Heitz14, eq. 99] */, separable /* a plain product */ };
+
+/// Roughness below which a surface counts as perfectly smooth.
+inline constexpr float smooth_alpha = 1e-3f;
+
+struct Ggx {
+    float alpha = 0.5f;  // ≥ smooth_alpha
+    Masking masking = Masking::correlated;
+};
+
+/// Density of microfacet normals over projected area, 1/sr; sin² from x and y keeps narrow peaks exact.
+inline float ggx_density(const Ggx& g, LocalDir m) {
+    const float a2 = sqr(g.alpha);
+    return a2 * inv_pi / sqr(a2 * sqr(m.v.z) + sqr(m.v.x) + sqr(m.v.y));
+}
+
+/// Smith's Λ: masked over visible projected area.
+inline float ggx_lambda(const Ggx& g, LocalDir w) {
+    const float tan2 = (sqr(w.v.x) + sqr(w.v.y)) / sqr(w.v.z);
+    return 0.5f * (std::sqrt(1 + sqr(g.alpha) * tan2) - 1);
+}
+
+inline float ggx_masking(const Ggx& g, LocalDir w) { return 1 / (1 + ggx_lambda(g, w)); }
+
+/// Visible and lit share of the microfacets; both directions on the surface's same side or opposite ones.
+inline float ggx_masking_shadowing(const Ggx& g, LocalDir w_out, LocalDir w_in) {
+    const float lambda_out = ggx_lambda(g, w_out), lambda_in = ggx_lambda(g, w_in);
+    return g.masking == Masking::correlated ? 1 / (1 + lambda_out + lambda_in) : 1 / ((1 + lambda_out) * (1 + lambda_in));
+}
+
+/// A point on the unit sphere's cap z ≥ −`lowest`, uniform in solid angle, as the tip of a mirrored view ray [Dupuy23].
+inline Vec3 sample_cap(float lowest, Point2 u) {
+    const float phi = 2 * pi * u.x;
+    const float z = (1 - u.y) * (1 + lowest) - lowest;
+    const float r = std::sqrt(std::max(0.0f, 1 - sqr(z)));
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+/// A microfacet normal, by the density of those visible from `w_out` (z > 0) [Heitz18, Dupuy23].
+inline LocalDir sample_visible_normal(const Ggx& g, LocalDir w_out, Point2 u) {
+    const Vec3 stretched = normalize({g.alpha * w_out.v.x, g.alpha * w_out.v.y, w_out.v.z});
+    const Vec3 m = sample_cap(stretched.z, u) + stretched;
+    return {normalize({g.alpha * m.x, g.alpha * m.y, std::max(m.z, 1e-12f)})};
+}
+
+/// 1/sr over microfacet normals.
+inline float visible_normal_pdf(const Ggx& g, LocalDir w_out, LocalDir m) {
+    return ggx_masking(g, w_out) * std::abs(dot(w_out.v, m.v)) * ggx_density(g, m) / std::abs(w_out.v.z);
+}
+
+/// The share of the cap that can reflect above the surface [Eto23, eq. 5]; α ≤ 1.
+inline float reflection_bound(const Ggx& g, LocalDir w_out) {
+    const float a2 = sqr(g.alpha);
+    const float s2 = sqr(1 + std::sqrt(sqr(w_out.v.x) + sqr(w_out.v.y)));
+    return (1 - a2) * s2 / (s2 + a2 * sqr(w_out.v.z));
+}
+
+inline LocalDir reflect(LocalDir w, LocalDir m) { return {m.v * (2 * dot(w.v, m.v)) - w.v}; }
+
+/// A reflected direction by visible normals, with few of those that would end under the surface [Eto23].
+inline LocalDir sample_reflection(const Ggx& g, LocalDir w_out, Point2 u) {
+    const Vec3 stretched = normalize({g.alpha * w_out.v.x, g.alpha * w_out.v.y, w_out.v.z});
+    const Vec3 m = sample_cap(reflection_bound(g, w_out) * stretched.z, u) + stretched;
+    return reflect(w_out, {normalize({g.alpha * m.x, g.alpha * m.y, std::max(m.z, 1e-12f)})});
+}
+
+/// 1/sr over reflected directions with half vector `m` [Eto23, eq. 8].
+inline float reflection_pdf(const Ggx& g, LocalDir w_out, LocalDir m) {
+    const float stretched_length = std::sqrt(sqr(g.alpha) * (sqr(w_out.v.x) + sqr(w_out.v.y)) + sqr(w_out.v.z));
+    return ggx_density(g, m) / (2 * (reflection_bound(g, w_out) * w_out.v.z + stretched_length));
+}
+
+/// Schlick's Fresnel reflectance between `f0` at normal and `f90` at grazing incidence.
+inline Spectrum schlick(Spectrum f0, Spectrum f90, float cosine) {
+    const float x = std::clamp(1 - cosine, 0.0f, 1.0f);
+    return f0 + (f90 - f0) * (sqr(sqr(x)) * x);
+}
+
+}  // namespace relumine

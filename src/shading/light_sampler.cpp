@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawing lights.
+#include "shading/light_sampler.hpp"
+
+#include "shading/delta_lights.hpp"
+#include "shading/material.hpp"
+#include "shading/sampling.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr std::uint32_t no_light = 0xffffffffu;
+/// With both an environment and local lights, neither gets less than this share of the samples: power says little about
+/// which of them a point sees.
+constexpr float min_group_share = 0.3f;
+/// So that rounding does not make a uniform sky look uneven.
+constexpr float flat_margin = 1.0001f;
+
+double mean_of_channels(Spectrum s) { return (double{s.r} + s.g + s.b) / 3; }
+
+/// Mean emission of a triangle, over a fixed pattern where it is textured.
+double mean_emission(const SceneData& scene, const Mesh& mesh, std::uint32_t triangle) {
+    const Material& material = scene.materials[index(mesh.material)];
+    if (!material.emission_texture) return mean_of_channels(material.emission);
+    constexpr int side = 4;
+    double sum = 0;
+    for (int i = 0; i < side * side; ++i) {
+        const Point2 u{(static_cast<float>(i % side) + 0.5f) / side, (static_cast<float>(i / side) + 0.5f) / side};
+        const Point2 b = uniform_triangle(u);
+        Hit hit;
+        hit.u = b.x;
+        hit.v = b.y;
+        hit.triangle = triangle;
+        sum += mean_of_channels(material_emission(scene, material, texture_coordinates(mesh, hit).uv));
+    }
+    return sum / (side * side);
+}
+
+std::vector<float> normalised_cdf(const std::vector<double>& powers) {
+    double total = 0;
+    for (const double power : powers) total += power;
+    std::vector<float> cdf{0};
+    double sum = 0;
+    for (const double power : powers) cdf.push_back(static_cast<float>((sum += power) / total));
+    return cdf;
+}
+
+}  // namespace
+
+LightSampler::~LightSampler() = default;
+
+LightSampler::LightSampler(const SceneData& scene, const LightSelection& selection) : scene_(scene) {
+    std::vector<double> powers;
+    first_triangle_.assign(scene.instances.size(), no_light);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) add_emissive_instance(i, selection, powers);
+    if (selection.delta_lights) add_delta_lights(powers);
+    double local_power = 0;
+    for (const double power : powers) local_power += power;
+    if (local_power > 0) {
+        local_cdf_ = normalised_cdf(powers);
+        for (std::size_t i = 0; i < triangles_.size(); ++i) triangles_[i].probability = local_cdf_[i + 1] - local_cdf_[i];
+    }
+
+    double environment_power = 0;
+    if (scene.environment) {
+        const float mean = EnvironmentLight::mean_radiance(*scene.environment);
+        const float floor = std::max(selection.threshold, selection.compensate_for_mis ? mean * flat_margin : 0.0f);
+        environment_.emplace(*scene.environment, floor);
+        if (environment_->can_sample()) environment_power = 4 * pi * pi * sqr(scene.bounds.radius()) * mean;
+    }
+    if (environment_power > 0)
+        environment_probability_ = local_power <= 0 ? 1.0f
+                                                    : std::clamp(static_cast<float>(environment_power / (environment_power + local_power)),
+                                                                 min_group_share, 1 - min_group_share);
+    if (local_power > 0) local_probability_ = 1 - environment_probability_;
+}
+
+void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& selection, std::vector<double>& powers) {
+    const Mesh& mesh = scene_.meshes[index(scene_.instances[i].mesh)];
+    const Material& material = scene_.materials[index(mesh.material)];
+    if (mean_of_channels(material.emission) <= selection.threshold) return;
+    first_triangle_[i] = static_cast<std::uint32_t>(triangles_.size());
+    const float winding = determinant(scene_.instances[i].world_from_object) < 0 && !scene_.instances[i].identity ? -1.0f : 1.0f;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto [a, b, c] = world_triangle(scene_, i, t);
+        const Vec3 normal = cross(b - a, c - a) * winding;
+        const float area = 0.5f * length(normal);
+        triangles_.push_back({a, b - a, c - a, area > 0 ? normalize(normal) : normal, area, 0, i, t, material.double_sided});
+        local_.push_back({Kind::triangle, static_cast<std::uint32_t>(triangles_.size() - 1)});
+        powers.push_back(double{pi} * area * mean_emission(scene_, mesh, t) * (material.double_sided ? 2 : 1));
+    }
+}
+
+void LightSampler::add_delta_lights(std::vector<double>& powers) {
+    for (std::uint32_t i = 0; i < scene_.point_lights.size(); ++i) {
+        local_.push_back({Kind::point, i});
+        powers.push_back(4 * double{pi} * mean_of_channels(scene_.point_lights[i].intensity));
+    }
+    for (std::uint32_t i = 0; i < scene_.spot_lights.size(); ++i) {
+        const SpotLight& light = scene_.spot_lights[i];
+        local_.push_back({Kind::spot, i});
+        powers.push_back(2 * double{pi} * (1 - 0.5 * (light.cos_inner + light.cos_outer)) * mean_of_channels(light.intensity));
+    }
+    for (std::uint32_t i = 0; i < scene_.directional_lights.size(); ++i) {
+        local_.push_back({Kind::directional, i});
+        powers.push_back(double{pi} * sqr(scene_.bounds.radius()) * mean_of_channels(scene_.directional_lights[i].irradiance));
+    }
+}
+
+float LightSampler::triangle_density(const EmissiveTriangle& light, Vec3 from, Vec3 on_light) const {
+    const Vec3 to_light = on_light - from;
+    const float distance2 = length_squared(to_light);
+    const float cosine = std::abs(dot(to_light, light.normal)) / std::sqrt(distance2);
+    if (!(cosine > 0) || light.area <= 0) return 0;
+    return local_probability_ * light.probability * distance2 / (light.area * cosine);
+}
+
+std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle& light, Vec3 from, Point2 u) const {
+    const Point2 b = uniform_triangle(u);
+    const Vec3 point = light.corner + light.edge1 * b.x + light.edge2 * b.y;
+    const Vec3 to_light = point - from;
+    const float distance = length(to_light);
+    const bool front = dot(to_light, light.normal) < 0;
+    if (!(distance > 0) || (!front && !light.double_sided)) return {};
+    const float density = triangle_density(light, from, point);
+    if (!(density > 0)) return {};
+    const Hit hit{distance, b.x, b.y, light.instance, light.triangle};
+    const Mesh& mesh = scene_.meshes[index(scene_.instances[light.instance].mesh)];
+    const Material& material = scene_.materials[index(mesh.material)];
+    Spectrum radiance = material.emission;
+    if (material.emission_texture || material.alpha_mode != AlphaMode::opaque) {
+        const TextureCoordinates at = texture_coordinates(mesh, hit);
+        radiance = material_emission(scene_, material, at.uv) * opacity(scene_, material, at);
+    }
+    const float offset = rounding_offset({light.corner, light.corner + light.edge1, light.corner + light.edge2});
+    return LightSample{{to_light / distance}, point + light.normal * (front ? offset : -offset), distance, radiance, density};
+}
+
+std::optional<LightSample> LightSampler::sample_local(Vec3 from, float u_choice, Point2 u) const {
+    const auto above = std::upper_bound(local_cdf_.begin() + 1, local_cdf_.end() - 1, u_choice);
+    const auto chosen = static_cast<std::size_t>(above - local_cdf_.begin()) - 1;
+    const LocalLight& light = local_[chosen];
+    if (light.kind == Kind::triangle) return sample_triangle(triangles_[light.index], from, u);
+    const float probability = local_probability_ * (local_cdf_[chosen + 1] - local_cdf_[chosen]);
+    std::optional<LightSample> sample;
+    if (light.kind == Kind::point) sample = light_sample(scene_.point_lights[light.index], from);
+    if (light.kind == Kind::spot) sample = light_sample(scene_.spot_lights[light.index], from);
+    if (light.kind == Kind::directional) sample = light_sample(scene_.directional_lights[light.index]);
+    if (sample) sample->pdf = probability;
+    return sample;
+}
+
+std::optional<LightSample> LightSampler::sample(Vec3 from, float u_choice, Point2 u) const {
+    if (u_choice < environment_probability_) {
+        const EnvironmentSample drawn = environment_->sample(u);
+        if (!(drawn.pdf > 0)) return {};
+        return LightSample{drawn.direction, {}, infinity, environment_->radiance(drawn.direction), environment_probability_ * drawn.pdf};
+    }
+    if (local_probability_ <= 0) return {};
+    return sample_local(from, std::min((u_choice - environment_probability_) / local_probability_, 0x1.fffffep-1f), u);
+}
+
+float LightSampler::pdf(Vec3 from, const SurfacePoint& hit) const {
+    const std::uint32_t first = first_triangle_[hit.instance];
+    return first == no_light ? 0.0f : triangle_density(triangles_[first + hit.triangle], from, hit.position);
+}
+
+float LightSampler::environment_pdf(WorldDir direction) const {
+    return environment_probability_ > 0 ? environment_probability_ * environment_->pdf(direction) : 0.0f;
+}
+
+Spectrum LightSampler::environment_radiance(WorldDir direction) const {
+    return environment_ ? environment_->radiance(direction) : Spectrum{};
+}
+
+float bright_threshold(const SceneData& scene, float factor) {
+    if (scene.environment) return factor * EnvironmentLight::mean_radiance(*scene.environment);
+    return 0;  // every emitter stands out against black
+}
+
+}  // namespace relumine

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials at points.
+#include "shading/material.hpp"
+
+#include "shading/texture.hpp"
+
+namespace relumine {
+namespace {
+
+Spectrum rgb(Vec4 v) { return {v.x, v.y, v.z}; }
+
+/// A material's factors times its textures at one point.
+struct Factors {
+    Spectrum base_color;
+    float metallic, alpha /* GGX */, transmission, specular;
+    Spectrum specular_color;
+};
+
+Factors factors_at(const SceneData& scene, const SurfacePoint& p) {
+    const Material& m = *p.material;
+    Factors f{m.base_color * p.vertex_color, m.metallic, 0, m.transmission, m.specular, m.specular_color};
+    float roughness = m.roughness;
+    if (m.base_color_texture) f.base_color *= rgb(sample_texture(scene, *m.base_color_texture, p.uv, Encoding::srgb));
+    if (m.metallic_roughness_texture) {
+        const Vec4 texel = sample_texture(scene, *m.metallic_roughness_texture, p.uv, Encoding::linear);
+        roughness *= texel.y;
+        f.metallic *= texel.z;
+    }
+    if (m.transmission_texture) f.transmission *= sample_texture(scene, *m.transmission_texture, p.uv, Encoding::linear).x;
+    if (m.specular_texture) f.specular *= sample_texture(scene, *m.specular_texture, p.uv, Encoding::linear).w;
+    if (m.specular_color_texture)
+        f.specular_color *= rgb(sample_texture(scene, *m.specular_color_texture, p.uv, Encoding::srgb));
+    f.alpha = sqr(roughness);
+    return f;
+}
+
+Spectrum clamped(Spectrum s) { return {std::min(s.r, 1.0f), std::min(s.g, 1.0f), std::min(s.b, 1.0f)}; }
+
+Bsdf glass(const SurfacePoint& p, const Factors& f, Masking masking) {
+    const Material& m = *p.material;
+    const float eta = p.front || !m.solid ? m.ior : 1 / m.ior;
+    if (f.alpha < smooth_alpha) return SmoothDielectric{eta, f.base_color, !m.solid};
+    // An index of 1 refracts nothing: only the thin model has a density then.
+    if (m.solid && std::abs(eta - 1) < 1e-4f) return SmoothDielectric{eta, f.base_color, true};
+    return RoughDielectric{eta, f.base_color, !m.solid, {std::min(f.alpha, 1.0f), masking}};
+}
+
+/// The layering without its transmissive part: metal in the share `metallic` of it.
+Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking) {
+    const bool smooth = f.alpha < smooth_alpha;
+    const Ggx ggx{std::clamp(f.alpha, smooth_alpha, 1.0f), masking};
+    if (metallic >= 1) return smooth ? Bsdf{Mirror{f.base_color}} : Bsdf{RoughConductor{f.base_color, ggx}};
+    const Spectrum coat_f0 = clamped(f.specular_color * sqr((ior - 1) / (ior + 1))) * f.specular;
+    const Spectrum coat_f90{f.specular};
+    if (metallic <= 0 && f.specular <= 0) return Lambert{f.base_color};
+    return MetallicRoughness{f.base_color * (1 - metallic), coat_f0, coat_f90, lerp(coat_f0, f.base_color, metallic),
+                             lerp(coat_f90, Spectrum{1}, metallic), ggx, smooth};
+}
+
+}  // namespace
+
+Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u) {
+    const Factors f = factors_at(scene, p);
+    const float glass_share = f.transmission * (1 - f.metallic);
+    if (u < glass_share) return glass(p, f, masking);
+    return opaque_layers(f, glass_share > 0 ? f.metallic / (1 - glass_share) : f.metallic, p.material->ior, masking);
+}
+
+Spectrum material_emission(const SceneData& scene, const Material& material, const std::array<Vec2, 2>& uv) {
+    if (!material.emission_texture || is_black(material.emission)) return material.emission;
+    return material.emission * rgb(sample_texture(scene, *material.emission_texture, uv, Encoding::srgb));
+}
+
+Spectrum emitted_radiance(const SceneData& scene, const SurfacePoint& p) {
+    if (!p.front && !p.material->double_sided) return {};
+    return material_emission(scene, *p.material, p.uv);
+}
+
+float opacity(const SceneData& scene, const Material& material, const TextureCoordinates& at) {
+    if (material.alpha_mode == AlphaMode::opaque) return 1;
+    float alpha = material.base_alpha * at.vertex_alpha;
+    if (material.base_color_texture) alpha *= sample_texture(scene, *material.base_color_texture, at.uv, Encoding::srgb).w;
+    if (material.alpha_mode == AlphaMode::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+    return alpha;
+}
+
+Spectrum transmittance(const Material& material, float distance) {
+    const float power = distance / material.attenuation_distance;
+    const Spectrum& c = material.attenuation_color;
+    return {std::pow(c.r, power), std::pow(c.g, power), std::pow(c.b, power)};
+}
+
+}  // namespace relumine

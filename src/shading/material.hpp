@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a material's factors and textures at a point to the models that scatter and emit light there.
+#pragma once
+
+#include "shading/bsdf.hpp"
+#include "shading/surface_point.hpp"
+
+namespace relumine {
+
+/// The BSDF at `p`. Where a material is partly transmissive, `u` in [0, 1) decides whether this is glass or the opaque layering.
+[[nodiscard]] Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u);
+
+/// Radiance that the surface emits towards the viewer of `p`, W·sr⁻¹·m⁻².
+[[nodiscard]] Spectrum emitted_radiance(const SceneData& scene, const SurfacePoint& p);
+
+/// As above, at texture coordinates, without regard to sides.
+[[nodiscard]] Spectrum material_emission(const SceneData& scene, const Material& material, const std::array<Vec2, 2>& uv);
+
+/// Opacity in [0, 1]: 0 or 1 for alpha masks.
+[[nodiscard]] float opacity(const SceneData& scene, const Material& material, const TextureCoordinates& at);
+
+/// The share of light that passes `distance` metres through the body behind this (solid) material.
+[[nodiscard]] Spectrum transmittance(const Material& material, float distance);
+
+/// Whether light inside the body behind this material is attenuated.
+inline bool attenuates(const Material& material) { return material.solid && std::isfinite(material.attenuation_distance); }
+
+}  // namespace relumine

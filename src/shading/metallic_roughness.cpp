@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// The glTF layering of coat, diffuse base and metal.
+#include "shading/bsdf.hpp"
+#include "shading/sampling.hpp"
+
+namespace relumine {
+namespace {
+
+/// What reaches the diffuse base through the coat at a facet that `cosine` looks at [glTF 2.0, §B.3.4].
+float coat_transmittance(const MetallicRoughness& b, float cosine) {
+    return 1 - std::min(1.0f, max_component(schlick(b.coat_f0, b.coat_f90, cosine)));
+}
+
+/// The probability of sampling the specular lobe, by the lobes' rough shares of the reflected light.
+float specular_probability(const MetallicRoughness& b, LocalDir w_out) {
+    const float specular = max_component(schlick(b.specular_f0, b.specular_f90, cos_theta(w_out)));
+    const float diffuse = max_component(b.diffuse) * coat_transmittance(b, cos_theta(w_out));
+    if (specular <= 0) return 0;
+    if (diffuse <= 0) return 1;
+    return std::clamp(specular / (specular + diffuse), 0.1f, 0.9f);
+}
+
+Spectrum specular_lobe(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in, LocalDir m) {
+    return schlick(b.specular_f0, b.specular_f90, dot(w_in.v, m.v))
+           * (ggx_density(b.ggx, m) * ggx_masking_shadowing(b.ggx, w_out, w_in) / (4 * cos_theta(w_out)));
+}
+
+}  // namespace
+
+Spectrum eval(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in) {
+    if (cos_theta(w_in) <= 0) return {};
+    const LocalDir m{normalize(w_out.v + w_in.v)};
+    const Spectrum diffuse = b.diffuse * (inv_pi * cos_theta(w_in) * coat_transmittance(b, dot(w_in.v, m.v)));
+    return b.smooth ? diffuse : diffuse + specular_lobe(b, w_out, w_in, m);
+}
+
+float pdf(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in) {
+    if (cos_theta(w_in) <= 0) return 0;
+    const float specular = specular_probability(b, w_out);
+    const float diffuse = (1 - specular) * cos_theta(w_in) * inv_pi;
+    return b.smooth ? diffuse : diffuse + specular * reflection_pdf(b.ggx, w_out, {normalize(w_out.v + w_in.v)});
+}
+
+std::optional<BsdfSample> sample(const MetallicRoughness& b, LocalDir w_out, BsdfRandom u) {
+    const float specular = specular_probability(b, w_out);
+    const bool choose_specular = u.lobe < specular;
+    if (choose_specular && b.smooth) {
+        const Spectrum reflected = schlick(b.specular_f0, b.specular_f90, cos_theta(w_out));
+        return BsdfSample{{{-w_out.v.x, -w_out.v.y, w_out.v.z}}, reflected / specular, specular, true};
+    }
+    const LocalDir w_in = choose_specular ? sample_reflection(b.ggx, w_out, u.direction) : cosine_hemisphere(u.direction);
+    const float density = pdf(b, w_out, w_in);
+    if (!(density > 0)) return {};
+    return BsdfSample{w_in, eval(b, w_out, w_in) / density, density};
+}
+
+float delta_probability(const Bsdf& bsdf, LocalDir w_out) {
+    if (is_delta(bsdf)) return 1;
+    const auto* layers = std::get_if<MetallicRoughness>(&bsdf);
+    return layers && layers->smooth ? specular_probability(*layers, w_out) : 0.0f;
+}
+
+Bsdf without_delta(const Bsdf& bsdf) {
+    const auto* layers = std::get_if<MetallicRoughness>(&bsdf);
+    if (!layers || !layers->smooth) return bsdf;
+    MetallicRoughness diffuse = *layers;
+    diffuse.specular_f0 = diffuse.specular_f90 = Spectrum{};
+    return diffuse;
+}
+
+Spectrum albedo(const Bsdf& bsdf) {
+    struct Visitor {
+        Spectrum operator()(const Lambert& b) const { return b.albedo; }
+        Spectrum operator()(const Mirror& b) const { return b.f0; }
+        Spectrum operator()(const RoughConductor& b) const { return b.f0; }
+        Spectrum operator()(const SmoothDielectric& b) const { return b.tint; }
+        Spectrum operator()(const RoughDielectric& b) const { return b.tint; }
+        Spectrum operator()(const MetallicRoughness& b) const {
+            return b.diffuse * (1 - std::min(1.0f, max_component(b.coat_f0))) + b.specular_f0;
+        }
+    };
+    return std::visit(Visitor{}, bsdf);
+}
+
+}  // namespace relumine

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a hit to a surface point: interpolation, sides, normal maps.
+#include "shading/surface_point.hpp"
+
+#include "shading/texture.hpp"
+
+namespace relumine {
+namespace {
+
+/// The least cosine between viewer and shading normal; a smaller one would leave the viewer under the surface.
+constexpr float min_view_cosine = 1e-3f;
+
+template <typename T>
+T interpolate(const std::vector<T>& values, const Triangle& triangle, const Hit& hit) {
+    const auto& [a, b, c] = triangle.vertex;
+    return values[a] * (1 - hit.u - hit.v) + values[b] * hit.u + values[c] * hit.v;
+}
+
+Vec3 barycentric(const std::array<Vec3, 3>& corners, const Hit& hit) {
+    return corners[0] * (1 - hit.u - hit.v) + corners[1] * hit.u + corners[2] * hit.v;
+}
+
+Vec3 xyz(Vec4 v) { return {v.x, v.y, v.z}; }
+
+std::array<Vec2, 2> interpolate_uv(const Mesh& mesh, const Triangle& triangle, const Hit& hit) {
+    std::array<Vec2, 2> uv{};
+    for (std::size_t set = 0; set < uv.size(); ++set)
+        if (!mesh.uvs[set].empty()) uv[set] = interpolate(mesh.uvs[set], triangle, hit);
+    return uv;
+}
+
+/// Object-space normals and tangents to world space (up to length).
+class NormalMapper {
+  public:
+    explicit NormalMapper(const Instance& instance) : instance_(instance) {
+        if (instance.identity) return;
+        cofactor_ = cofactor(instance.world_from_object);
+        if (determinant(instance.world_from_object) < 0) sign_ = -1;
+    }
+    [[nodiscard]] Vec3 normal(Vec3 n) const { return instance_.identity ? n : cofactor_.vector(n) * sign_; }
+    [[nodiscard]] Vec3 tangent(Vec3 t) const { return instance_.identity ? t : instance_.world_from_object.vector(t); }
+    /// The sign of a normal from transformed corners against the one of the mesh's own winding.
+    [[nodiscard]] float winding() const { return sign_; }
+
+  private:
+    const Instance& instance_;
+    Transform cofactor_;
+    float sign_ = 1;
+};
+
+/// The normal that a normal map asks for, unnormalised [glTF 2.0, §3.9.3].
+Vec3 mapped_normal(const SceneData& scene, const SurfacePoint& p, Vec3 normal, Vec4 tangent) {
+    const Vec4 texel = sample_texture(scene, *p.material->normal_texture, p.uv, Encoding::linear);
+    const float scale = p.material->normal_scale;
+    const Vec3 m{(2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, 2 * texel.z - 1};
+    const Vec3 t = xyz(tangent) - normal * dot(normal, xyz(tangent));
+    if (length_squared(t) == 0) return normal;
+    const Vec3 unit_t = normalize(t);
+    const Vec3 b = cross(normal, unit_t) * tangent.w;
+    return unit_t * m.x + b * m.y + normal * m.z;
+}
+
+/// `n`, turned just enough that `w_out` is above it.
+Vec3 keep_viewer_above(Vec3 n, Vec3 w_out) {
+    const float cosine = dot(n, w_out);
+    return cosine >= min_view_cosine ? n : normalize(n + w_out * (min_view_cosine - cosine));
+}
+
+Vec3 shading_normal(const SceneData& scene, const Mesh& mesh, const Triangle& triangle, const Hit& hit, const NormalMapper& map,
+                    const SurfacePoint& p, Vec3 front_normal) {
+    Vec3 n = front_normal;
+    if (!mesh.normals.empty()) {
+        const Vec3 smooth = map.normal(interpolate(mesh.normals, triangle, hit));
+        if (length_squared(smooth) > 0) n = normalize(smooth);
+    }
+    if (p.material->normal_texture && !mesh.tangents.empty()) {
+        Vec4 tangent = mesh.tangents[triangle.vertex[0]];
+        const float handedness = tangent.w * map.winding();
+        const auto& [a, b, c] = triangle.vertex;
+        const Vec3 along = xyz(mesh.tangents[a]) * (1 - hit.u - hit.v) + xyz(mesh.tangents[b]) * hit.u + xyz(mesh.tangents[c]) * hit.v;
+        const Vec3 world = map.tangent(along);
+        tangent = {world.x, world.y, world.z, handedness};
+        const Vec3 mapped = mapped_normal(scene, p, n, tangent);
+        if (length_squared(mapped) > 0) n = normalize(mapped);
+    }
+    return n;
+}
+
+}  // namespace
+
+std::array<Vec3, 3> world_triangle(const SceneData& scene, std::uint32_t instance_index, std::uint32_t triangle_index) {
+    const Instance& instance = scene.instances[instance_index];
+    const Mesh& mesh = scene.meshes[index(instance.mesh)];
+    const auto& [a, b, c] = mesh.triangles[triangle_index].vertex;
+    std::array<Vec3, 3> corners{mesh.positions[a], mesh.positions[b], mesh.positions[c]};
+    if (!instance.identity)
+        for (Vec3& corner : corners) corner = instance.world_from_object.point(corner);
+    return corners;
+}
+
+float rounding_offset(const std::array<Vec3, 3>& corners) {
+    constexpr float units_in_last_place = 32;
+    return units_in_last_place * 0x1p-24f * std::max({max_abs(corners[0]), max_abs(corners[1]), max_abs(corners[2])});
+}
+
+TextureCoordinates texture_coordinates(const Mesh& mesh, const Hit& hit) {
+    const Triangle& triangle = mesh.triangles[hit.triangle];
+    TextureCoordinates coordinates{interpolate_uv(mesh, triangle, hit)};
+    if (!mesh.colors.empty()) {
+        const auto& [a, b, c] = triangle.vertex;
+        coordinates.vertex_alpha = mesh.colors[a][3] * (1 - hit.u - hit.v) + mesh.colors[b][3] * hit.u + mesh.colors[c][3] * hit.v;
+    }
+    return coordinates;
+}
+
+SurfacePoint surface_point(const SceneData& scene, const Hit& hit, WorldDir w_out) {
+    const Instance& instance = scene.instances[hit.instance];
+    const Mesh& mesh = scene.meshes[index(instance.mesh)];
+    const Triangle& triangle = mesh.triangles[hit.triangle];
+    const std::array<Vec3, 3> corners = world_triangle(scene, hit.instance, hit.triangle);
+    const NormalMapper map(instance);
+
+    SurfacePoint p;
+    p.position = barycentric(corners, hit);
+    p.material = &scene.materials[index(mesh.material)];
+    p.instance = hit.instance;
+    p.triangle = hit.triangle;
+    p.offset = rounding_offset(corners);
+    p.uv = interpolate_uv(mesh, triangle, hit);
+    if (!mesh.colors.empty()) {
+        const auto color = [&](std::size_t i) {
+            const auto& c = mesh.colors[triangle.vertex[i]];
+            return Spectrum{c[0], c[1], c[2]};
+        };
+        p.vertex_color = color(0) * (1 - hit.u - hit.v) + color(1) * hit.u + color(2) * hit.v;
+    }
+    const Vec3 front_normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0])) * map.winding();
+    p.front = dot(front_normal, w_out.v) >= 0;
+    p.geometric_normal = p.front ? front_normal : -front_normal;
+    Vec3 n = shading_normal(scene, mesh, triangle, hit, map, p, front_normal);
+    n = face_forward(p.front ? n : -n, p.geometric_normal);
+    p.frame = frame_around(keep_viewer_above(n, w_out.v));
+    return p;
+}
+
+}  // namespace relumine

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where rays meet the scene: a thin layer over Embree 3 or 4.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "base/frame.hpp"
+#include "scene/scene_data.hpp"
+
+namespace relumine {
+
+struct Ray {
+    Vec3 origin;
+    WorldDir direction;
+    float t_max = infinity;       // in units of the (unit) direction
+    std::uint32_t opacity_seed = 0;  // decides which partly transparent surfaces this ray sees
+};
+
+inline constexpr std::uint32_t no_instance = 0xffffffffu;
+
+struct Hit {
+    float t = infinity;
+    float u = 0, v = 0;  // barycentric weights of the triangle's second and third vertex
+    std::uint32_t instance = no_instance;
+    std::uint32_t triangle = 0;
+
+    explicit operator bool() const { return instance != no_instance; }
+};
+
+inline constexpr std::size_t packet_size = 16;
+
+/// The opacity in [0, 1] of a point on a triangle (fields t unset).
+using OpacityFunction = std::function<float(const Hit&)>;
+
+/// The acceleration structure over a scene. Immutable; any number of threads may trace at a time, with denormals flushed.
+///
+/// Surfaces that are not opaque are met with a probability of their opacity, decided by a hash of the ray's opacity_seed and
+/// the triangle, so that neither the order of traversal nor the thread can change the answer.
+class Tracer {
+  public:
+    /// Builds over `scene`, which must outlive the tracer. `opacity` is asked for materials whose alpha mode is not opaque.
+    Tracer(const SceneData& scene, OpacityFunction opacity, int threads);
+    ~Tracer();
+    Tracer(const Tracer&) = delete;
+    Tracer& operator=(const Tracer&) = delete;
+
+    [[nodiscard]] Hit closest_hit(const Ray& ray) const;
+    [[nodiscard]] bool occluded(const Ray& ray) const;
+
+    /// Sixteen rays at once: faster where they are coherent, such as camera rays. Rays with t_max < 0 are left out. A lane's last
+    /// digits may depend on its neighbours, so a packet must always be traced with the same sixteen rays.
+    void closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relumine
