@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The film.
+#include "film/film.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "base/assert.hpp"
+
+namespace relumine {
+namespace {
+
+enum class Develop { mean, first /* value of sample 0 */, variance /* from sums and sums of squares */, samples };
+
+void put(std::span<float> out, Spectrum s) {
+    out[0] = s.r;
+    out[1] = s.g;
+    out[2] = s.b;
+}
+void put(std::span<float> out, Vec3 v) {
+    out[0] = v.x;
+    out[1] = v.y;
+    out[2] = v.z;
+}
+
+/// The variance of the mean of `n` samples from their sum and sum of squares, as if they were independent.
+float variance_of_mean(float sum, float sum_of_squares, float n) {
+    if (n < 2) return 0;
+    const double mean = static_cast<double>(sum) / n;
+    return static_cast<float>(std::max(0.0, static_cast<double>(sum_of_squares) / n - mean * mean) / (static_cast<double>(n) - 1));
+}
+
+}  // namespace
+
+/// A layer: its channels and what of a pixel's sums goes into them.
+struct Film::LayerSpec {
+    const char* name;
+    std::vector<std::string> channels;
+    Develop develop;
+    void (*extract)(const PixelSums&, std::span<float>);
+    bool surface = false;  // needs FirstSurface
+
+    /// Floats kept per pixel: a variance is made of the sum and the sum of squares.
+    [[nodiscard]] std::size_t stored() const { return develop == Develop::variance ? 2 * channels.size() : channels.size(); }
+};
+
+const std::vector<Film::LayerSpec>& Film::known_layers() {
+    using S = const PixelSums&;
+    using Out = std::span<float>;
+    const std::vector<std::string> rgb{"R", "G", "B"}, xyz{"X", "Y", "Z"};
+    static const std::vector<LayerSpec> layers{
+        {"", rgb, Develop::mean, [](S p, Out o) { put(o, p.radiance); }},
+        {"albedo", rgb, Develop::mean, [](S p, Out o) { put(o, p.albedo); }, true},
+        {"normal", xyz, Develop::mean, [](S p, Out o) { put(o, p.normal); }, true},
+        {"position", xyz, Develop::first, [](S p, Out o) { put(o, p.first.position); }, true},
+        {"depth", {"Z"}, Develop::first, [](S p, Out o) { o[0] = p.first.depth; }, true},
+        {"material_id", {"ID"}, Develop::first, [](S p, Out o) { o[0] = p.first.material_id; }, true},
+        {"emission", rgb, Develop::mean, [](S p, Out o) { put(o, p.split.emission); }},
+        {"direct", rgb, Develop::mean, [](S p, Out o) { put(o, p.split.direct); }},
+        {"indirect", rgb, Develop::mean, [](S p, Out o) { put(o, p.split.indirect); }},
+        {"samples", {"N"}, Develop::samples, [](S p, Out o) { o[0] = static_cast<float>(p.samples); }},
+        {"variance", rgb, Develop::variance,
+         [](S p, Out o) {
+             put(o, p.radiance);
+             put(o.subspan(3), p.radiance_squared);
+         }},
+    };
+    return layers;
+}
+
+std::vector<std::string> film_layer_names() {
+    return {"albedo", "normal", "position", "depth", "material_id", "emission", "direct", "indirect", "samples", "variance"};
+}
+
+bool needs_surfaces(const std::vector<std::string>& layers) {
+    const std::array surface_layers{"albedo", "normal", "position", "depth", "material_id"};
+    return std::ranges::any_of(layers, [&](const std::string& name) { return std::ranges::find(surface_layers, name) != surface_layers.end(); });
+}
+
+Film::Film(int frame_width, int frame_height, const PixelRect& window, const std::vector<std::string>& layers)
+    : frame_width_(frame_width), frame_height_(frame_height), window_(window) {
+    const auto add_layer = [&](const std::string& name) {
+        const auto& known = known_layers();
+        const auto found = std::ranges::find_if(known, [&](const LayerSpec& spec) { return spec.name == name; });
+        RELUMINE_ASSERT(found != known.end());
+        layers_.push_back(&*found);
+        channels_ += found->stored();
+    };
+    add_layer("");
+    for (const std::string& name : layers) add_layer(name);
+    const std::size_t pixels = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+    finished_.resize(pixels * channels_);
+    pending_.resize(pixels * channels_);
+    finished_samples_.resize(pixels);
+    pending_samples_.resize(pixels);
+}
+
+std::size_t Film::offset(int x, int y) const {
+    return static_cast<std::size_t>(y - window_.y0) * static_cast<std::size_t>(window_.width()) + static_cast<std::size_t>(x - window_.x0);
+}
+
+void Film::add(const Tile& tile) {
+    const PixelSums* sums = tile.pixels.data();
+    for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
+        for (int x = tile.rect.x0; x < tile.rect.x1; ++x, ++sums) {
+            const std::size_t pixel = offset(x, y);
+            float* out = &pending_[pixel * channels_];
+            for (const LayerSpec* layer : layers_) {
+                layer->extract(*sums, {out, layer->stored()});
+                out += layer->stored();
+            }
+            pending_samples_[pixel] = sums->samples;
+        }
+}
+
+void Film::finish_pass() {
+    for (std::size_t i = 0; i < finished_.size(); ++i) finished_[i] += pending_[i];
+    for (std::size_t i = 0; i < finished_samples_.size(); ++i) finished_samples_[i] += pending_samples_[i];
+    std::ranges::fill(pending_, 0.0f);
+    std::ranges::fill(pending_samples_, 0u);
+    ++passes_;
+}
+
+Image Film::develop() const {
+    Image image{window_.width(), window_.height(), window_, frame_width_, frame_height_, {}, {}};
+    std::size_t at = 0;
+    for (const LayerSpec* spec : layers_) {
+        const std::size_t channels = spec->channels.size();
+        Layer layer{spec->name, spec->channels, std::vector<float>(finished_samples_.size() * channels)};
+        for (std::size_t pixel = 0; pixel < finished_samples_.size(); ++pixel) {
+            const float* sums = &finished_[pixel * channels_ + at];
+            const auto n = static_cast<float>(finished_samples_[pixel]);
+            for (std::size_t c = 0; c < channels; ++c) {
+                float& out = layer.pixels[pixel * channels + c];
+                if (spec->develop == Develop::mean) out = n > 0 ? sums[c] / n : 0;
+                if (spec->develop == Develop::first || spec->develop == Develop::samples) out = sums[c];
+                if (spec->develop == Develop::variance) out = variance_of_mean(sums[c], sums[c + channels], n);
+            }
+        }
+        image.layers.push_back(std::move(layer));
+        at += spec->stored();
+    }
+    return image;
+}
+
+}  // namespace relumine

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The methods by name.
+#include "integrators/registry.hpp"
+
+#include "base/assert.hpp"
+#include "integrators/gather.hpp"
+#include "integrators/path_tracer.hpp"
+
+namespace relumine {
+namespace {
+
+using Maker = std::unique_ptr<Integrator> (*)(const RenderSettings&, const Transport&, const View&, bool surface_layers);
+
+struct Method {
+    const char* name;
+    Maker make;
+};
+
+constexpr std::array methods{
+    Method{"path", make_path_tracer},
+    Method{"gather", make_gather},
+};
+
+}  // namespace
+
+std::vector<std::string> integrator_names() {
+    std::vector<std::string> names;
+    for (const Method& method : methods) names.emplace_back(method.name);
+    return names;
+}
+
+std::unique_ptr<Integrator> make_integrator(const RenderSettings& settings, const Transport& transport, const View& view,
+                                            bool surface_layers) {
+    const auto named = [&](const Method& method) { return settings.method == method.name; };
+    const auto* method = std::ranges::find_if(methods, named);
+    RELUMINE_ASSERT(method != methods.end());
+    return method->make(settings, transport, view, surface_layers);
+}
+
+}  // namespace relumine

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera samples in packets.
+#include "integrators/view.hpp"
+
+#include "shading/material.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr int block = 4;  // pixels along each side; block² = packet_size
+
+CameraSample camera_sample(const View& view, int x, int y, std::uint32_t sample) {
+    CameraSample s{x, y, pixel_stream(view.seed, x, y, sample, view.samples_per_pixel, view.point_set), {}};
+    const Point2 in_pixel = view.filter.position(s.stream.next2(Dim::pixel));
+    s.path.ray = view.camera.through({static_cast<float>(x) + in_pixel.x, static_cast<float>(y) + in_pixel.y});
+    s.path.ray.opacity_seed = s.stream.bits(Dim::opacity, 0);
+    return s;
+}
+
+bool contains(const PixelRect& rect, int x, int y) { return x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1; }
+
+std::array<CameraSample, packet_size> trace_block(const View& view, const Tracer& tracer, int x0, int y0, std::uint32_t sample) {
+    std::array<CameraSample, packet_size> samples;
+    std::array<Ray, packet_size> rays;
+    std::array<Hit, packet_size> hits;
+    for (int lane = 0; lane < block * block; ++lane) {
+        const auto i = static_cast<std::size_t>(lane);
+        samples[i] = camera_sample(view, x0 + lane % block, y0 + lane / block, sample);
+        rays[i] = samples[i].path.ray;
+    }
+    tracer.closest_hits(rays, hits);
+    for (std::size_t i = 0; i < packet_size; ++i) samples[i].path.hit = hits[i];
+    return samples;
+}
+
+}  // namespace
+
+void for_each_camera_sample(const View& view, const Tracer& tracer, Tile& tile,
+                            const std::function<void(const CameraSample&)>& use) {
+    const PixelRect& r = tile.rect;
+    for (int y0 = r.y0 / block * block; y0 < r.y1; y0 += block)
+        for (int x0 = r.x0 / block * block; x0 < r.x1; x0 += block)
+            for (std::uint32_t s = 0; s < tile.sample_count; ++s) {
+                tile.rays.add(RayPurpose::camera, packet_size);
+                for (const CameraSample& sample : trace_block(view, tracer, x0, y0, tile.first_sample + s))
+                    if (contains(r, sample.x, sample.y)) use(sample);
+            }
+}
+
+FirstSurface first_surface(const Transport& t, const CameraSample& sample) {
+    if (!sample.path.hit) return {};
+    PathState path = sample.path;
+    const Vertex vertex = make_vertex(t, path, sample.stream);
+    const auto material = static_cast<float>(vertex.point.material - t.scene.materials.data() + 1);
+    return {albedo(vertex.bsdf), vertex.point.frame.n, vertex.point.position, path.hit.t, material};
+}
+
+}  // namespace relumine

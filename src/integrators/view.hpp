@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera samples: which rays a picture asks for and what they hit first.
+#pragma once
+
+#include <functional>
+
+#include "base/sample_stream.hpp"
+#include "base/tile.hpp"
+#include "integrators/camera_rays.hpp"
+#include "integrators/pixel_filter.hpp"
+#include "radiance/path.hpp"
+
+namespace relumine {
+
+/// What turns pixels into camera samples.
+struct View {
+    CameraRays camera;
+    PixelFilter filter;
+    PointSet point_set = PointSet::sobol;
+    std::uint64_t seed = 0;
+    std::uint32_t samples_per_pixel = 1;
+};
+
+/// A camera ray and what it hit, as the beginning of a path.
+struct CameraSample {
+    int x = 0, y = 0;  // full frame
+    SampleStream stream;
+    PathState path;
+};
+
+/// Calls `use` for every sample of the tile: pixels in blocks of 4 × 4 that lie at multiples of 4 of the full frame, whose rays
+/// are traced as packets. A block is always traced whole, so that a crop sees the same bits as the full picture.
+void for_each_camera_sample(const View& view, const Tracer& tracer, Tile& tile, const std::function<void(const CameraSample&)>& use);
+
+/// What the layers about surfaces show of a camera sample.
+[[nodiscard]] FirstSurface first_surface(const Transport& t, const CameraSample& sample);
+
+}  // namespace relumine

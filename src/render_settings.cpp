@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which settings exist and which of their values make sense.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/message.hpp"
+#include "film/film.hpp"
+#include "integrators/registry.hpp"
+#include "relumine/error.hpp"
+#include "relumine/render.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr int max_side = 65536;  // pixels
+
+void check_name(const char* setting, const std::string& value, const std::vector<std::string>& known) {
+    if (std::ranges::find(known, value) != known.end()) return;
+    throw SettingsError{expected_found(setting, one_of(known), "\"" + value + "\"" + did_you_mean(value, known))};
+}
+
+void check_range(const char* setting, std::int64_t value, std::int64_t least, std::int64_t most) {
+    if (value >= least && value <= most) return;
+    throw SettingsError{expected_found(setting, fmt::format("{} to {}", least, most), std::to_string(value))};
+}
+
+void check_frame(const RenderSettings& s) {
+    if ((s.width == 0) != (s.height == 0))
+        throw SettingsError{expected_found("size", "width and height, or neither", fmt::format("{}x{}", s.width, s.height))};
+    check_range("width", s.width, 0, max_side);
+    check_range("height", s.height, 0, max_side);
+}
+
+void check_layers(const std::vector<std::string>& names) {
+    for (auto name = names.begin(); name != names.end(); ++name) {
+        check_name("aov", *name, aov_names());
+        if (std::find(names.begin(), name, *name) != name)
+            throw SettingsError{expected_found("aov", "each layer once", "\"" + *name + "\" twice")};
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> render_methods() { return integrator_names(); }
+
+std::vector<std::string> aov_names() { return film_layer_names(); }
+
+void validate(const RenderSettings& s) {
+    constexpr std::int64_t million = std::int64_t{1} << 20, max_rays_per_pixel = std::int64_t{1} << 31;
+    check_name("method", s.method, render_methods());
+    check_range("samples per pixel", s.samples_per_pixel, 1, million);
+    check_name("pixel sampling", s.pixel_sampling, {"jitter", "center"});
+    check_name("pixel filter", s.pixel_filter, {"box", "blackman-harris"});
+    check_name("sampler", s.sampler, {"auto", "sobol", "stratified", "independent"});
+    check_range("gather rays", s.gather_rays, 1, million);
+    check_range("light samples", s.light_samples, 0, million);
+    check_range("gather rays × samples per pixel", std::int64_t{s.gather_rays} * s.samples_per_pixel, 1, max_rays_per_pixel);
+    check_range("light samples × samples per pixel", std::int64_t{s.light_samples} * s.samples_per_pixel, 0, max_rays_per_pixel);
+    check_range("max depth", s.max_depth, -1, million);
+    check_name("radiance", s.radiance, {"auto", "emission", "direct", "path"});
+    check_name("masking", s.masking, {"correlated", "separable"});
+    check_range("threads", s.threads, 0, 4096);
+    check_frame(s);
+    check_layers(s.aovs);
+}
+
+}  // namespace relumine

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Statistics as JSON; the keys are documented in docs/statistics.md.
+#include <nlohmann/json.hpp>
+
+#include "relumine/render.hpp"
+
+namespace relumine {
+
+std::string RenderStats::to_json() const {
+    nlohmann::ordered_json json;
+    for (const auto& [stage, seconds] : stage_seconds) json["stage_seconds"][stage] = seconds;
+    json["total_seconds"] = total_seconds;
+    json["cpu_seconds"] = cpu_seconds;
+    json["rays"] = rays;
+    json["total_rays"] = total_rays;
+    json["samples"] = samples;
+    json["non_finite_samples"] = non_finite_samples;
+    if (first_non_finite) json["first_non_finite"] = *first_non_finite;
+    json["peak_memory_bytes"] = peak_memory_bytes;
+    json["threads"] = threads;
+    json["stopped"] = stopped;
+    return json.dump(2);
+}
+
+}  // namespace relumine
