@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of `relumine render`: the table of docs/command.md, and what of it does not exist yet.
+#include "cli/render_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace relumine::cli {
+namespace {
+
+constexpr std::array<NotYet, 16> options_not_yet{{
+    {"--error", "the cache method"},
+    {"--unbiased", "the cache method"},
+    {"--record-size", "the cache and reproject methods"},
+    {"--cache-scope", "the cache method"},
+    {"--reference", "the report of the true error"},
+    {"--filter-residual", "the cache method"},
+    {"--isa", "the choice of instruction sets"},
+    {"--only-sample", "the replay of single samples"},
+    {"--memory-limit", "the memory budget"},
+    {"--preview", "the live preview"},
+    {"--denoise", "the denoiser"},
+    {"--allow-dir", "scenes that span several folders"},
+    {"--time-limit", "checkpoints"},
+    {"--checkpoint", "checkpoints"},
+    {"--resume", "checkpoints"},
+    {"--tev", "the live view in tev"},
+}};
+constexpr std::array<NotYet, 5> values_not_yet{{
+    {"--method cache", "the radiance cache"},
+    {"--method reproject", "the paper's methods"},
+    {"--method reproject-mc", "the paper's methods"},
+    {"--radiance radiosity", "precomputed radiance"},
+    {"--radiance photons", "precomputed radiance"},
+}};
+
+constexpr std::string_view exit_code_help =
+    "Exit codes: 0 done; 1 bad input or failed output; 2 bad usage; 3 stopped by a signal, picture saved.";
+
+/// Throws for a value that is documented but does not exist yet.
+void refuse_planned_value(const std::string& option, const std::string& value) {
+    const auto planned = std::ranges::find(values_not_yet, option + " " + value, &NotYet::name);
+    if (planned != values_not_yet.end()) throw refusal(*planned);
+}
+
+/// "640x480" → 640, 480.
+void parse_size(const std::string& text, RenderSettings& settings) {
+    const std::size_t x = text.find_first_of("xX");
+    const auto bad = [&] {
+        return unexpected_value("--size", "WIDTHxHEIGHT in pixels, such as 640x480", text);
+    };
+    if (x == std::string::npos) throw bad();
+    try {
+        settings.width = parse_number<int>("--size", std::string_view(text).substr(0, x));
+        settings.height = parse_number<int>("--size", std::string_view(text).substr(x + 1));
+    } catch (const UsageError&) {
+        throw bad();
+    }
+    if (settings.width < 1 || settings.height < 1) throw bad();
+}
+
+PixelRect parse_crop(const std::vector<std::string>& text) {
+    std::array<int, 4> edge{};
+    std::ranges::transform(text, edge.begin(), [](const auto& t) { return parse_number<int>("--crop", t); });
+    return {edge[0], edge[1], edge[2], edge[3]};
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        parts.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
+void add_output_options(CLI::App& app, RenderOptions& options) {
+    add_file(app, {"SCENE", "", ".gltf, .glb; .ply, .ply.gz, .obj open as a model under a built-in sky"},
+             options.scene);
+    app.add_option("-o,--output", options.outputs, "the picture: .exr, .png or .pfm; may be repeated")
+        ->type_name("FILE")
+        ->option_text("FILE REQUIRED")
+        ->allow_extra_args(false)
+        ->required();
+    add_value(app, {"--aov", "LIST", "further layers for .exr, separated by commas"}, "",
+              [&](const std::string& list) { options.settings.aovs = split_at_commas(list); });
+    add_number(app, {"--exposure", "EV", "stops, for .png"}, options.write.exposure, "0");
+    app.add_flag("--half", options.write.half_floats, "16-bit floats in .exr, where the layer allows it");
+}
+
+void add_sampling_options(CLI::App& app, RenderSettings& s) {
+    add_value(app, {"--method", "M", fmt::format("{}", fmt::join(render_methods(), ", "))}, s.method,
+              [&](const std::string& method) {
+                  refuse_planned_value("--method", method);
+                  s.method = method;
+              });
+    add_number(app, {"--spp", "N", "camera samples per pixel"}, s.samples_per_pixel,
+               std::to_string(s.samples_per_pixel));
+    add_text(app, {"--pixel-sampling", "P", "where in the pixel: jitter, center"}, s.pixel_sampling);
+    add_text(app, {"--pixel-filter", "F", "box, blackman-harris"}, s.pixel_filter);
+    add_text(app, {"--sampler", "S", "auto, sobol, stratified, independent"}, s.sampler);
+    add_number(app, {"--gather-rays", "N", "rays per shading point, for gather"}, s.gather_rays,
+               std::to_string(s.gather_rays));
+    add_number(app, {"--light-samples", "N", "shadow rays to the bright light per shading point, for gather"},
+               s.light_samples, std::to_string(s.light_samples));
+    add_number(app, {"--seed", "N", "same seed, same bits"}, s.seed, "0");
+}
+
+void add_light_options(CLI::App& app, RenderSettings& s) {
+    add_number(
+        app, {"--max-depth", "N", "scattering vertices of a path: 0 emission, 1 direct light; -1 unlimited"},
+        s.max_depth, "-1");
+    add_value(app, {"--radiance", "S", "what a gather ray brings back: auto, emission, direct, path"},
+              s.radiance, [&](const std::string& source) {
+                  refuse_planned_value("--radiance", source);
+                  s.radiance = source;
+              });
+    add_text(app, {"--masking", "M", "of microfacets: correlated, separable"}, s.masking);
+}
+
+void add_scene_options(CLI::App& app, RenderOptions& options) {
+    SceneOptions& scene = options.scene_options;
+    add_text(app, {"--environment", "FILE", "lat-long .exr, .hdr or .pfm that replaces the scene's own"},
+             scene.environment);
+    add_number(app, {"--env-scale", "X", "multiplies the environment's radiance"}, scene.environment_scale,
+               "1");
+    add_number(app, {"--env-rotate", "DEG", "counter-clockwise seen from +Y"},
+               scene.environment_rotation_degrees, "0");
+}
+
+void add_camera_options(CLI::App& app, RenderSettings& s) {
+    add_text(app, {"--camera", "NAME|INDEX", "the first by default; a framing one where there is none"},
+             s.camera);
+    add_value(app, {"--size", "WxH", "pixels of the full frame"}, "1024 wide by the camera's aspect",
+              [&](const std::string& size) { parse_size(size, s); });
+    app.add_option_function<std::vector<std::string>>(
+           "--crop", [&](const std::vector<std::string>& edges) { s.crop = parse_crop(edges); },
+           "only the pixels X0 <= x < X1, Y0 <= y < Y1 of the full frame")
+        ->expected(4)
+        ->type_name("edges")
+        ->option_text("X0 Y0 X1 Y1");
+}
+
+void add_running_options(CLI::App& app, RenderOptions& options) {
+    add_number(app, {"--threads", "N", "0: all; never changes the picture"}, options.settings.threads, "0");
+    add_text(app, {"--stats", "FILE", "statistics as JSON, \"-\" for stdout; keys: docs/statistics.md"},
+             options.stats_file);
+    app.add_flag("--json-events", options.json_events, "progress on stdout, one JSON object per line");
+    app.add_flag("-q,--quiet", options.quiet, "no progress and no warnings on stderr");
+    app.add_flag("--no-progress", options.no_progress,
+                 "no progress on stderr (it is shown on terminals alone)");
+}
+
+void add_options(CLI::App& app, RenderOptions& options) {
+    app.option_defaults()->group("Output");
+    add_output_options(app, options);
+    app.option_defaults()->group("Method and sampling");
+    add_sampling_options(app, options.settings);
+    app.option_defaults()->group("Light");
+    add_light_options(app, options.settings);
+    add_scene_options(app, options);
+    app.option_defaults()->group("Camera");
+    add_camera_options(app, options.settings);
+    app.option_defaults()->group("Running");
+    add_running_options(app, options);
+}
+
+void refuse_contradictions(const RenderOptions& options) {
+    if (options.json_events && options.stats_file == "-")
+        throw UsageError(
+            "--stats: expected a file beside --json-events, whose last line holds the statistics, found "
+            "\"-\"");
+}
+
+}  // namespace
+
+std::optional<RenderOptions> parse_render_options(const Arguments& arguments) {
+    CLI::App app("Renders SCENE and writes the picture.", "relumine render");
+    RenderOptions options;
+    add_options(app, options);
+    app.footer(fmt::format("Layers for --aov: {}.\n{}", fmt::join(aov_names(), ", "), exit_code_help));
+    if (!parse(app, arguments, options_not_yet)) return std::nullopt;
+    refuse_contradictions(options);
+    return options;
+}
+
+}  // namespace relumine::cli

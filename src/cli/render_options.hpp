@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of `relumine render`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/arguments.hpp"
+#include "relumine/image.hpp"
+#include "relumine/render.hpp"
+#include "relumine/scene.hpp"
+
+namespace relumine::cli {
+
+struct RenderOptions {
+    std::string scene;
+    std::vector<std::string> outputs;  // at least one
+    SceneOptions scene_options;
+    RenderSettings settings;
+    WriteOptions write;
+    std::string stats_file;  // "": none; "-": stdout
+    bool json_events = false;
+    bool quiet = false;
+    bool no_progress = false;
+};
+
+/// Empty when help was wanted and has been printed. Throws UsageError.
+[[nodiscard]] std::optional<RenderOptions> parse_render_options(const Arguments& arguments);
+
+}  // namespace relumine::cli

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arguments of the command: help, what is refused, and in which words.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "cli_workplace.hpp"
+#include "relumine/render.hpp"
+
+namespace relumine::test {
+namespace {
+
+TEST(Cli, TellsItsVersion) {
+    const CommandResult result = run_relumine({"--version"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.out, std::string("relumine ") + version() + "\n");
+}
+
+TEST(Cli, HelpNamesEveryCommand) {
+    const CommandResult result = run_relumine({"--help"});
+    EXPECT_EQ(result.exit_code, 0);
+    for (const char* command : {"render", "info", "compare"})
+        EXPECT_NE(result.out.find(command), std::string::npos);
+    for (const char* command : {"render", "info", "compare"})
+        EXPECT_EQ(run_relumine({command, "--help"}).exit_code, 0);
+}
+
+TEST(Cli, HelpNamesEveryOptionAndItsDefault) {
+    const std::string help = run_relumine({"render", "--help"}).out;
+    for (const char* option :
+         {"--output",      "--method",      "--spp",           "--pixel-sampling", "--pixel-filter",
+          "--sampler",     "--gather-rays", "--light-samples", "--max-depth",      "--radiance",
+          "--masking",     "--environment", "--env-scale",     "--env-rotate",     "--camera",
+          "--size",        "--crop",        "--exposure",      "--threads",        "--seed",
+          "--aov",         "--half",        "--stats",         "--json-events",    "--quiet",
+          "--no-progress", "(default 16)",  "(default 4096)",  "(default box)"})
+        EXPECT_NE(help.find(option), std::string::npos) << option;
+}
+
+struct Usage {
+    std::vector<std::string> arguments;
+    std::string words;  // of the one line on stderr
+};
+
+TEST(Cli, RefusesWhatDoesNotExistYetByName) {
+    const Workplace work;
+    for (const char* option :
+         {"--error", "--unbiased", "--record-size", "--cache-scope", "--reference", "--filter-residual",
+          "--isa", "--only-sample", "--memory-limit", "--preview", "--denoise", "--allow-dir", "--time-limit",
+          "--checkpoint", "--resume", "--tev"})
+        expect_one_line(work.render({option, "1"}), 2,
+                        std::string(option) + " is not available yet: it comes with ");
+    for (const Usage& usage :
+         std::vector<Usage>{{{"--tev=localhost:14158"}, "--tev is not available yet"},
+                            {{"--method", "cache"}, "--method cache is not available yet"},
+                            {{"--method", "reproject"}, "--method reproject is not"},
+                            {{"--method", "reproject-mc"}, "--method reproject-mc is not"},
+                            {{"--radiance", "radiosity"}, "--radiance radiosity is not"},
+                            {{"--radiance", "photons"}, "--radiance photons is not"}})
+        expect_one_line(work.render(usage.arguments), 2, usage.words);
+    for (const char* command : {"inspect", "relight"})
+        expect_one_line(run_relumine({command}), 2, std::string(command) + " is not available yet");
+}
+
+TEST(Cli, RefusesBadUsage) {
+    const std::vector<Usage> cases{
+        {{}, "expected a command"},
+        {{"rendr", "a.glb"}, "did you mean \"render\"?"},
+        {{"render"}, "SCENE"},
+        {{"render", "a.glb"}, "--output"},
+        {{"render", "a.glb", "-o"}, "--output"},
+        {{"render", "a.glb", "b.glb", "-o", "c.png"}, "b.glb"},
+        {{"render", "a.glb", "-o", "c.jpg"}, ".exr, .png or .pfm"},
+        {{"render", "a.glb", "-o", "c"}, ".exr, .png or .pfm"},
+        {{"render", "a.glb", "-o", "c.png", "-o", "c.png"}, "once"},
+        {{"render", "a.glb", "-o", "c.png", "--sppp", "4"}, "did you mean \"--spp\"?"},
+        {{"render", "a.glb", "-o", "c.png", "--json-events", "--stats", "-"}, "--stats"},
+        {{"info"}, "SCENE"},
+        {{"info", "a.glb", "--jsn"}, "did you mean \"--json\"?"},
+        {{"compare", "a.png"}, "REFERENCE"},
+    };
+    for (const Usage& usage : cases) expect_one_line(run_relumine(usage.arguments), 2, usage.words);
+}
+
+TEST(Cli, RefusesSettingsOutOfRange) {
+    const std::vector<Usage> cases{
+        {{"--spp", "0"}, "found 0"},
+        {{"--spp", "-1"}, "found -1"},
+        {{"--spp", "2x"}, "--spp: expected a whole number"},
+        {{"--spp", "1.5"}, "--spp: expected a whole number"},
+        {{"--spp", ""}, "--spp: expected a whole number"},
+        {{"--spp", "99999999999"}, "--spp: expected a whole number"},
+        {{"--spp", "1", "--spp", "2"}, "--spp"},
+        {{"--size", "16"}, "--size: expected WIDTHxHEIGHT"},
+        {{"--size", "16x"}, "--size: expected WIDTHxHEIGHT"},
+        {{"--size", "x16"}, "--size: expected WIDTHxHEIGHT"},
+        {{"--size", "0x16"}, "--size: expected WIDTHxHEIGHT"},
+        {{"--size", "-4x16"}, "--size: expected WIDTHxHEIGHT"},
+        {{"--size", "1e3x16"}, "--size: expected WIDTHxHEIGHT"},
+        {{"--size", "2000000000x2000000000"}, "2000000000"},
+        {{"--crop", "0", "0", "0", "16"}, "crop"},
+        {{"--crop", "8", "8", "4", "4"}, "crop"},
+        {{"--crop", "0", "0", "17", "16"}, "17"},
+        {{"--crop", "-1", "0", "4", "4"}, "-1"},
+        {{"--crop", "0", "0", "4", "x"}, "--crop"},
+        {{"--crop", "0", "0", "4"}, "--crop"},
+        {{"--threads", "-1"}, "-1"},
+        {{"--threads", "two"}, "--threads"},
+        {{"--seed", "-1"}, "--seed: expected a whole number from 0"},
+        {{"--seed", "18446744073709551616"}, "--seed: expected a whole number"},
+        {{"--gather-rays", "0", "--method", "gather"}, "found 0"},
+        {{"--light-samples", "-1", "--method", "gather"}, "found -1"},
+        {{"--max-depth", "-2"}, "found -2"},
+        {{"--exposure", "nan"}, "--exposure: expected a finite number"},
+        {{"--env-rotate", "x"}, "--env-rotate: expected a finite number"},
+        {{"--env-scale", "inf"}, "--env-scale: expected a finite number"},
+        {{"--env-scale", "-1"}, "-1"},
+        {{"--method", "pth"}, "did you mean \"path\"?"},
+        {{"--sampler", "sobl"}, "sobol"},
+        {{"--radiance", "emision", "--method", "gather"}, "emission"},
+        {{"--masking", "none"}, "none"},
+        {{"--pixel-sampling", "centre"}, "center"},
+        {{"--pixel-filter", "bx"}, "box"},
+        {{"--aov", "albdo"}, "did you mean \"albedo\"?"},
+        {{"--aov", "albedo,"}, ""},
+        {{"--camera", "nobody"}, "nobody"},
+        {{"--camera", "7"}, "7"},
+    };
+    const Workplace work;
+    for (const Usage& usage : cases) {
+        SCOPED_TRACE(usage.arguments[0] + " " + usage.arguments[1]);
+        expect_one_line(work.render(usage.arguments), 2, usage.words);
+        EXPECT_FALSE(std::filesystem::exists(work.picture));
+    }
+}
+
+}  // namespace
+}  // namespace relumine::test
