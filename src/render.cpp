@@ -64,7 +64,6 @@ class Monitor {
         rays_.add(tile.rays);
         non_finite_ += tile.non_finite;
         keep_first(tile);
-        for (const PixelSums& pixel : tile.pixels) samples_ += pixel.samples;
         stage_.done += work;
         if (!observer_) return;
         stage_.rays = rays_.total();
@@ -82,7 +81,6 @@ class Monitor {
         stats.cpu_seconds = cpu_seconds() - cpu_begin_;
         for (std::size_t i = 0; i < ray_purpose_names.size(); ++i) stats.rays[ray_purpose_names[i]] = rays_.by_purpose[i];
         stats.total_rays = rays_.total();
-        stats.samples = samples_;
         stats.non_finite_samples = non_finite_;
         if (first_non_finite_)
             stats.first_non_finite = {first_non_finite_->x, first_non_finite_->y, first_non_finite_->sample};
@@ -112,7 +110,7 @@ class Monitor {
     double stage_begin_ = 0;
     std::vector<std::pair<std::string, double>> stages_;
     RayCounts rays_;
-    std::uint64_t samples_ = 0, non_finite_ = 0;
+    std::uint64_t non_finite_ = 0;
     std::optional<NonFiniteSample> first_non_finite_;
     std::atomic<bool> stopped_ = false;
 };
@@ -245,18 +243,20 @@ Image render(const Scene& scene, const RenderSettings& settings, RenderObserver*
         const Mesh& mesh = data.meshes[index(data.instances[hit.instance].mesh)];
         return opacity(data, data.materials[index(mesh.material)], texture_coordinates(mesh, hit));
     };
-    const Tracer tracer(data, opacity_at, threads);
+    const Tracer tracer(data, opacity_at);
     monitor.begin_stage("lights");
     const LightSampler lights(data, {});
     const Masking masking = settings.masking == "separable" ? Masking::separable : Masking::correlated;
-    const Transport transport{data, tracer, lights, masking};
+    const UniformBsdfs uniform_bsdfs(data, masking);
+    const Transport transport{data, tracer, lights, uniform_bsdfs, masking};
     const View view = make_view(settings, camera, frame);
     const auto integrator = make_integrator(settings, transport, view, needs_surfaces(settings.aovs));
 
     Film film(frame.width, frame.height, window, settings.aovs);
     render_passes(*integrator, window, view.samples_per_pixel, threads, film, monitor);
     Image image = film.develop();
-    const RenderStats stats = monitor.stats(threads);
+    RenderStats stats = monitor.stats(threads);
+    stats.samples = film.samples();
     describe(image, settings, stats);
     if (observer) observer->finished(stats);
     return image;

@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Determinism,
 
 TEST_P(Determinism, ThreadsDoNotChangeABit) {
     const auto [method, name] = GetParam();
-    const Scene scene = project_scene(name);
+    const Scene scene = project_scene(name, "sky.exr");
     RenderSettings settings = settings_for(method);
     settings.threads = 1;
     const Image one = render(scene, settings);
@@ -40,7 +40,7 @@ TEST_P(Determinism, ThreadsDoNotChangeABit) {
 
 TEST_P(Determinism, ACropHasTheBitsOfTheWhole) {
     const auto [method, name] = GetParam();
-    const Scene scene = project_scene(name);
+    const Scene scene = project_scene(name, "sky.exr");
     RenderSettings settings = settings_for(method);
     const Image whole = render(scene, settings);
     for (const PixelRect crop : {PixelRect{0, 0, 1, 1}, {13, 7, 47, 41}, {69, 49, 70, 50}}) {
@@ -55,7 +55,7 @@ TEST_P(Determinism, ACropHasTheBitsOfTheWhole) {
 
 TEST_P(Determinism, SeedsMatter) {
     const auto [method, name] = GetParam();
-    const Scene scene = project_scene(name);
+    const Scene scene = project_scene(name, "sky.exr");
     RenderSettings settings = settings_for(method);
     const Image first = render(scene, settings);
     settings.seed = 1;

@@ -54,14 +54,23 @@ TEST_P(EveryMethod, GreySphereIsOneEverywhere) {  // radius 1, albedo ½, light 
 }
 
 TEST_P(EveryMethod, LosslessBodiesVanishInAWhiteSky) {
-    // Diffuse white and smooth glass lose nothing; the metal's loss is single scattering's, below a percent at this roughness.
-    for (const auto& [name, least] : {std::pair{"furnace-diffuse.glb", 0.9999}, {"furnace-glass.glb", 0.9999},
-                                      {"furnace-metal.glb", 0.98}, {"furnace-rough-glass.glb", 0.95}, {"furnace-dielectric.glb", 0.97}}) {
+    for (const char* name : {"furnace-diffuse.glb", "furnace-glass.glb"}) {
         const Image image = render(project_scene(name, "white.pfm"), small(GetParam(), 64));
-        EXPECT_GT(mean_of(image), least) << name;
-        EXPECT_LT(mean_of(image), 1.0005) << name;
-        EXPECT_LT(*std::ranges::max_element(image.layer()->pixels), 1.2) << name;
+        EXPECT_NEAR(mean_of(image), 1, 0.001) << name;
+        EXPECT_LT(worst_deviation(image, 1), 0.02) << name;
     }
+}
+
+TEST_P(EveryMethod, RoughBodiesLoseWhatSingleScatteringLoses) {  // scenes/README.md: .987 and about .97
+    for (const auto& [name, expected] : {std::pair{"furnace-metal.glb", 0.987}, {"furnace-rough-glass.glb", 0.97}}) {
+        const Image image = render(project_scene(name, "white.pfm"), small(GetParam(), 64));
+        EXPECT_NEAR(mean_of(image), expected, 0.005) << name;
+    }
+}
+
+TEST_P(EveryMethod, TheGltfCoatOverWhiteGainsALittle) {  // glTF 2.0, appendix B, as written: docs/physics.md
+    const Image image = render(project_scene("furnace-dielectric.glb", "white.pfm"), small(GetParam(), 64));
+    EXPECT_NEAR(mean_of(image), 1.017, 0.005);
 }
 
 }  // namespace

@@ -15,10 +15,9 @@ constexpr std::uint32_t high(std::uint64_t x) { return static_cast<std::uint32_t
 std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) { return owen_scramble(index, seed); }
 
 Point2 sobol2(std::uint32_t index, std::uint64_t key) {
-    const std::uint64_t more = mix(key);
     const std::uint32_t i = shuffled(index, low(key));
     const std::uint32_t x = reverse_bits(laine_karras(i, high(key)));
-    const std::uint32_t y = reverse_bits(laine_karras(sobol_second_reversed(i), low(more)));
+    const std::uint32_t y = reverse_bits(laine_karras(sobol_second_reversed(i), high(key * 0xd1342543de82ef95u)));
     return {unit_float(x), unit_float(y)};
 }
 

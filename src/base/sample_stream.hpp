@@ -36,7 +36,8 @@ struct SampleStream {
 
   private:
     [[nodiscard]] std::uint64_t dimension_key(Dim dim, std::uint32_t vertex) const {
-        return hash(key, 16 * std::uint64_t{vertex} + static_cast<std::uint32_t>(dim));
+        const std::uint64_t dimension = 16 * std::uint64_t{vertex} + static_cast<std::uint32_t>(dim);
+        return mix(key ^ (dimension * 0x9e3779b97f4a7c15u));
     }
 };
 

@@ -52,7 +52,9 @@ struct Tile {
     std::uint64_t non_finite = 0;   // samples dropped
     std::optional<NonFiniteSample> first_non_finite;
 
-    /// Adds a sample to its pixel, or drops it where the radiance is not finite.
+    [[nodiscard]] bool contains(int x, int y) const { return x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1; }
+
+    /// Adds a sample to its pixel, which the tile contains, or drops it where the radiance is not finite.
     void add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance, const FirstSurface& surface);
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <span>
 
 #include "base/assert.hpp"
@@ -120,6 +121,10 @@ void Film::finish_pass() {
     std::ranges::fill(pending_, 0.0f);
     std::ranges::fill(pending_samples_, 0u);
     ++passes_;
+}
+
+std::uint64_t Film::samples() const {
+    return std::accumulate(finished_samples_.begin(), finished_samples_.end(), std::uint64_t{0});
 }
 
 Image Film::develop() const {

@@ -30,6 +30,9 @@ class Film {
     /// Whether any pass is finished.
     [[nodiscard]] bool has_passes() const { return passes_ > 0; }
 
+    /// Camera samples in the finished passes, all pixels together.
+    [[nodiscard]] std::uint64_t samples() const;
+
     /// Means over the samples of the finished passes. Pixels without samples are black.
     [[nodiscard]] Image develop() const;
 

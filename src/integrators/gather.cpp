@@ -12,6 +12,9 @@ namespace {
 /// Light whose radiance exceeds this many times the environment's mean is also sampled directly, if light samples are asked for.
 constexpr float bright_factor = 4;
 
+/// Mirrors and glass that a prefix may meet: one that meets more is caught between lossless surfaces.
+constexpr std::uint32_t longest_prefix = 1024;
+
 /// How many scattering vertices behind the gather ray's hit the radiance source adds.
 std::uint32_t source_depth(const std::string& radiance) {
     if (radiance == "emission") return 0;
@@ -43,15 +46,19 @@ class Gather final : public Integrator {
           rays_(static_cast<std::uint32_t>(settings.gather_rays)),
           light_samples_(static_cast<std::uint32_t>(settings.light_samples)),
           max_depth_(depth_limit(settings)),
-          source_depth_(source_depth(settings.radiance)) {
+          source_depth_(source_depth(settings.radiance)),
+          coherence_(view.point_set == PointSet::stratified ? Coherence::coherent : Coherence::incoherent) {
         const LightSelection bright{bright_threshold(transport.scene, bright_factor), false, false};
         if (light_samples_ > 0) bright_lights_ = std::make_unique<LightSampler>(transport.scene, bright);
     }
 
     void render(Tile& tile) const override {
-        for_each_camera_sample(view_, transport_.tracer, tile, [&](const CameraSample& s) {
-            const SplitRadiance radiance = outgoing_radiance(s, tile.rays);
-            tile.add(s.x, s.y, s.stream.index, radiance, surface_layers_ ? first_surface(transport_, s) : FirstSurface{});
+        for_each_camera_packet(view_, transport_.tracer, tile, [&](const CameraPacket& samples) {
+            for (const CameraSample& s : samples) {
+                if (!tile.contains(s.x, s.y)) continue;
+                const SplitRadiance radiance = outgoing_radiance(s, tile.rays);
+                tile.add(s.x, s.y, s.stream.index, radiance, surface_layers_ ? first_surface(transport_, s) : FirstSurface{});
+            }
         });
     }
 
@@ -71,7 +78,7 @@ class Gather final : public Integrator {
     /// Follows mirrors and smooth glass to a surface that scatters; adds what they show of light to `emission`.
     std::optional<ShadingPoint> follow_prefix(const CameraSample& s, Spectrum& emission, RayCounts& rays) const {
         PathState path = s.path;
-        while (path.hit && path.depth <= max_depth_ && path.depth < 1024) {
+        while (path.hit && path.depth < longest_prefix) {
             Vertex vertex = make_vertex(transport_, path, s.stream);
             emission += path.throughput * arriving_emission(transport_, path, &vertex.point);
             if (path.depth == max_depth_) return {};
@@ -81,7 +88,10 @@ class Gather final : public Integrator {
                 vertex.bsdf = without_delta(vertex.bsdf);
                 return ShadingPoint{path, vertex};
             }
-            if (!extend_path(transport_, path, vertex, s.stream, RayPurpose::prefix, rays)) return {};
+            scatter_path(path, vertex, s.stream);
+            if (!path.alive) return {};
+            rays.add(RayPurpose::prefix);
+            path.hit = transport_.tracer.closest_hit(path.ray);
         }
         if (!path.hit) emission += path.throughput * arriving_emission(transport_, path, nullptr);
         return {};
@@ -120,9 +130,8 @@ class Gather final : public Integrator {
                 if (first + lane < rays_) packet[lane] = sample_ray(x, stream, first + lane, gather_rays[lane]);
                 if (packet[lane].t_max >= 0) rays.add(RayPurpose::gather);
             }
-            transport_.tracer.closest_hits(packet, hits);
-            for (std::size_t lane = 0; lane < packet_size; ++lane)
-                if (packet[lane].t_max >= 0) add_incident(x, packet[lane], hits[lane], gather_rays[lane], sum, rays);
+            transport_.tracer.closest_hits(packet, hits, coherence_);
+            add_incident(x, packet, hits, gather_rays, sum, rays);
         }
         const float share = 1 / static_cast<float>(rays_);
         return {{}, sum.direct * share, sum.indirect * share};
@@ -142,17 +151,29 @@ class Gather final : public Integrator {
         return {ray_origin(x.vertex.point, w_in), w_in, infinity, ray.stream.bits(Dim::opacity, 2 * x.path.depth + 2)};
     }
 
-    /// Adds what a gather ray brings back: light it has hit, and light that the surface it has hit reflects.
-    void add_incident(const ShadingPoint& x, const Ray& ray, const Hit& hit, const GatherRay& gather_ray, SplitRadiance& sum,
-                      RayCounts& rays) const {
-        PathState path{ray, hit, x.path.depth + 1, 1, gather_ray.weight, x.path.eta_scale, 0, false};
-        const std::optional<Vertex> y = hit ? std::optional(make_vertex(transport_, path, gather_ray.stream)) : std::nullopt;
-        const Spectrum emission = arriving_emission(transport_, path, y ? &y->point : nullptr);
-        sum.direct += path.throughput * emission * bsdf_share(path.ray, y ? &y->point : nullptr, gather_ray.pdf);
-        if (!y || path.depth >= std::min(max_depth_, saturating_add(x.path.depth + 1, source_depth_))) return;
-        path.throughput = gather_ray.weight;  // path_radiance makes the vertex, and with it the attenuation, again
-        sum.indirect += path_radiance(transport_, path, std::min(max_depth_, saturating_add(x.path.depth + 1, source_depth_)),
-                                      gather_ray.stream, rays).total();
+    /// Adds what gather rays bring back: light they have hit, and light that the surfaces they have hit reflect.
+    void add_incident(const ShadingPoint& x, const std::array<Ray, packet_size>& packet, const std::array<Hit, packet_size>& hits,
+                      const std::array<GatherRay, packet_size>& gather_rays, SplitRadiance& sum, RayCounts& rays) const {
+        const std::uint32_t depth = x.path.depth + 1, limit = std::min(max_depth_, saturating_add(depth, source_depth_));
+        PathPacket paths;
+        StreamPacket streams;
+        for (std::size_t i = 0; i < packet_size; ++i) {
+            paths[i] = {packet[i], hits[i], depth, 1, gather_rays[i].weight, x.path.eta_scale, 0, false, packet[i].t_max >= 0};
+            streams[i] = gather_rays[i].stream;
+            if (!paths[i].alive) continue;
+            sum.direct += emission_of(paths[i], gather_rays[i]);
+            paths[i].alive = hits[i] && depth < limit;
+        }
+        if (depth >= limit) return;
+        for (const SplitRadiance& reflected : path_radiance(transport_, paths, limit, streams, rays)) sum.indirect += reflected.total();
+    }
+
+    /// What a gather ray brings straight from a light, times its weight.
+    Spectrum emission_of(PathState path, const GatherRay& gather_ray) const {
+        const std::optional<Vertex> y = path.hit ? std::optional(make_vertex(transport_, path, gather_ray.stream)) : std::nullopt;
+        const SurfacePoint* point = y ? &y->point : nullptr;
+        const Spectrum emission = arriving_emission(transport_, path, point);
+        return is_black(emission) ? emission : path.throughput * emission * bsdf_share(path.ray, point, gather_ray.pdf);
     }
 
     /// The balance heuristic's share of BSDF sampling against the samples of the bright light.
@@ -186,6 +207,7 @@ class Gather final : public Integrator {
     const View& view_;
     bool surface_layers_;
     std::uint32_t rays_, light_samples_, max_depth_, source_depth_;
+    Coherence coherence_;  // stratified rays are sorted by direction
     std::unique_ptr<LightSampler> bright_lights_;  // only with light samples
 };
 

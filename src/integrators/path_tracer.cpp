@@ -11,9 +11,19 @@ class PathTracer final : public Integrator {
         : transport_(transport), view_(view), max_depth_(max_depth), surface_layers_(surface_layers) {}
 
     void render(Tile& tile) const override {
-        for_each_camera_sample(view_, transport_.tracer, tile, [&](const CameraSample& s) {
-            const SplitRadiance radiance = path_radiance(transport_, s.path, max_depth_, s.stream, tile.rays);
-            tile.add(s.x, s.y, s.stream.index, radiance, surface_layers_ ? first_surface(transport_, s) : FirstSurface{});
+        for_each_camera_packet(view_, transport_.tracer, tile, [&](const CameraPacket& samples) {
+            PathPacket paths;
+            StreamPacket streams;
+            for (std::size_t i = 0; i < packet_size; ++i) {
+                paths[i] = samples[i].path;
+                streams[i] = samples[i].stream;
+            }
+            const RadiancePacket radiance = path_radiance(transport_, paths, max_depth_, streams, tile.rays);
+            for (std::size_t i = 0; i < packet_size; ++i) {
+                const CameraSample& s = samples[i];
+                if (!tile.contains(s.x, s.y)) continue;
+                tile.add(s.x, s.y, s.stream.index, radiance[i], surface_layers_ ? first_surface(transport_, s) : FirstSurface{});
+            }
         });
     }
 

@@ -17,10 +17,8 @@ CameraSample camera_sample(const View& view, int x, int y, std::uint32_t sample)
     return s;
 }
 
-bool contains(const PixelRect& rect, int x, int y) { return x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1; }
-
-std::array<CameraSample, packet_size> trace_block(const View& view, const Tracer& tracer, int x0, int y0, std::uint32_t sample) {
-    std::array<CameraSample, packet_size> samples;
+CameraPacket trace_block(const View& view, const Tracer& tracer, int x0, int y0, std::uint32_t sample) {
+    CameraPacket samples;
     std::array<Ray, packet_size> rays;
     std::array<Hit, packet_size> hits;
     for (int lane = 0; lane < block * block; ++lane) {
@@ -28,22 +26,20 @@ std::array<CameraSample, packet_size> trace_block(const View& view, const Tracer
         samples[i] = camera_sample(view, x0 + lane % block, y0 + lane / block, sample);
         rays[i] = samples[i].path.ray;
     }
-    tracer.closest_hits(rays, hits);
+    tracer.closest_hits(rays, hits, Coherence::coherent);
     for (std::size_t i = 0; i < packet_size; ++i) samples[i].path.hit = hits[i];
     return samples;
 }
 
 }  // namespace
 
-void for_each_camera_sample(const View& view, const Tracer& tracer, Tile& tile,
-                            const std::function<void(const CameraSample&)>& use) {
+void for_each_camera_packet(const View& view, const Tracer& tracer, Tile& tile, const std::function<void(const CameraPacket&)>& use) {
     const PixelRect& r = tile.rect;
     for (int y0 = r.y0 / block * block; y0 < r.y1; y0 += block)
         for (int x0 = r.x0 / block * block; x0 < r.x1; x0 += block)
             for (std::uint32_t s = 0; s < tile.sample_count; ++s) {
                 tile.rays.add(RayPurpose::camera, packet_size);
-                for (const CameraSample& sample : trace_block(view, tracer, x0, y0, tile.first_sample + s))
-                    if (contains(r, sample.x, sample.y)) use(sample);
+                use(trace_block(view, tracer, x0, y0, tile.first_sample + s));
             }
 }
 

@@ -6,16 +6,19 @@
 
 namespace relumine {
 
+Ray shadow_ray(const SurfacePoint& point, const LightSample& light, std::uint32_t opacity_seed) {
+    Ray ray{ray_origin(point, light.w_in), light.w_in, infinity, opacity_seed};
+    if (!std::isfinite(light.distance)) return ray;
+    const Vec3 way = light.target - ray.origin;
+    const float distance = length(way);
+    if (distance > 0) ray.direction = {way / distance};
+    ray.t_max = distance;
+    return ray;
+}
+
 bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light, std::uint32_t opacity_seed, RayCounts& rays) {
     rays.add(RayPurpose::shadow);
-    Ray ray{ray_origin(point, light.w_in), light.w_in, infinity, opacity_seed};
-    if (std::isfinite(light.distance)) {
-        const Vec3 way = light.target - ray.origin;
-        ray.t_max = length(way);
-        if (!(ray.t_max > 0)) return false;
-        ray.direction = {way / ray.t_max};
-    }
-    return t.tracer.occluded(ray);
+    return t.tracer.occluded(shadow_ray(point, light, opacity_seed));
 }
 
 Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
@@ -23,17 +26,16 @@ Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
     return eval(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light.w_in)) * light.radiance;
 }
 
-Spectrum sampled_direct_light(const Transport& t, const Vertex& vertex, const SampleStream& stream, std::uint32_t depth,
-                              RayCounts& rays) {
+std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex, const SampleStream& stream,
+                                                  std::uint32_t depth) {
     const auto light = t.lights.sample(vertex.point.position, stream.next1(Dim::light_choice, depth),
                                        stream.next2(Dim::light_point, depth));
     if (!light) return {};
     const Spectrum reflected = unshadowed(vertex, *light);
     if (is_black(reflected)) return {};
-    if (in_shadow(t, vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1), rays)) return {};
     const float weight = light->delta ? 1
                                       : mis_weight(light->pdf, pdf(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light->w_in)));
-    return reflected * (weight / light->pdf);
+    return LightProposal{shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1)), reflected * (weight / light->pdf)};
 }
 
 Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed, RayCounts& rays) {

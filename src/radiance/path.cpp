@@ -10,20 +10,87 @@ namespace relumine {
 namespace {
 
 constexpr std::uint32_t roulette_depth = 4;       // scattering vertices before Russian roulette may end a path
-constexpr float max_survival = 0.95f;             // so that even white scenes end
-constexpr std::uint32_t depth_of_no_return = 4096;  // a path that lives so long meets lossless surfaces alone: it is lost
+constexpr std::uint32_t lossless_depth = 256;     // from here on even paths that have lost nothing may end
+constexpr float max_survival = 0.95f;             // of those
+
+constexpr std::size_t least_packet = 4;           // fewer rays are faster one by one
 
 void add(SplitRadiance& sum, std::uint32_t scatterings, Spectrum radiance) {
     (scatterings == 0 ? sum.emission : scatterings == 1 ? sum.direct : sum.indirect) += radiance;
 }
 
 /// Ends paths by their throughput, or makes up for those that were ended.
-bool survives(PathState& path, float u) {
+bool survives(PathState& path, const SampleStream& stream) {
     if (path.depth <= roulette_depth) return true;
-    const float survival = std::min(max_component(path.throughput) * path.eta_scale, max_survival);
+    const float u = stream.next1(Dim::roulette, path.depth);
+    const float survival = std::min(max_component(path.throughput) * path.eta_scale, path.depth < lossless_depth ? 1.0f : max_survival);
     if (!(u < survival)) return false;
     path.throughput *= 1 / survival;
     return true;
+}
+
+/// The light proposals of one step of a packet of paths.
+struct ShadowPacket {
+    std::array<Ray, packet_size> rays;  // t_max < 0 where there is none
+    std::array<Spectrum, packet_size> radiance;
+    std::array<std::uint32_t, packet_size> scatterings;
+
+    ShadowPacket() {
+        for (Ray& ray : rays) ray.t_max = -1;
+    }
+};
+
+/// One step of a path at its hit: counts emission, proposes direct light, scatters.
+void advance(const Transport& t, PathState& path, std::uint32_t max_depth, const SampleStream& stream, SplitRadiance& sum,
+             ShadowPacket& shadows, std::size_t lane) {
+    if (!path.hit) {
+        if (path.count_emission) add(sum, path.scatterings, path.throughput * arriving_emission(t, path, nullptr));
+        path.alive = false;
+        return;
+    }
+    const Vertex vertex = make_vertex(t, path, stream);
+    if (path.count_emission) add(sum, path.scatterings, path.throughput * arriving_emission(t, path, &vertex.point));
+    path.alive = path.depth < max_depth;
+    if (!path.alive) return;
+    if (!is_delta(vertex.bsdf)) {
+        if (const auto light = propose_direct_light(t, vertex, stream, path.depth)) {
+            shadows.rays[lane] = light->shadow_ray;
+            shadows.radiance[lane] = path.throughput * light->reflected;
+            shadows.scatterings[lane] = path.scatterings + 1;
+        }
+    }
+    scatter_path(path, vertex, stream);
+    path.alive = path.alive && survives(path, stream);
+}
+
+std::size_t count_active(const std::array<Ray, packet_size>& rays) {
+    return static_cast<std::size_t>(std::ranges::count_if(rays, [](const Ray& ray) { return ray.t_max >= 0; }));
+}
+
+void add_unshadowed(const Transport& t, const ShadowPacket& shadows, RadiancePacket& sums, RayCounts& rays) {
+    const std::size_t active = count_active(shadows.rays);
+    rays.add(RayPurpose::shadow, active);
+    std::array<bool, packet_size> blocked{};
+    if (active >= least_packet) t.tracer.occluded(shadows.rays, blocked);
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        if (shadows.rays[i].t_max < 0) continue;
+        if (active < least_packet) blocked[i] = t.tracer.occluded(shadows.rays[i]);
+        if (!blocked[i]) add(sums[i], shadows.scatterings[i], shadows.radiance[i]);
+    }
+}
+
+void trace_bounces(const Transport& t, PathPacket& paths, RayCounts& rays) {
+    std::array<Ray, packet_size> bounces;
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        bounces[i] = paths[i].ray;
+        if (!paths[i].alive) bounces[i].t_max = -1;
+    }
+    const std::size_t active = count_active(bounces);
+    rays.add(RayPurpose::bounce, active);
+    std::array<Hit, packet_size> hits;
+    if (active >= least_packet) t.tracer.closest_hits(bounces, hits, Coherence::incoherent);
+    for (std::size_t i = 0; i < packet_size; ++i)
+        if (paths[i].alive) paths[i].hit = active >= least_packet ? hits[i] : t.tracer.closest_hit(bounces[i]);
 }
 
 }  // namespace
@@ -34,17 +101,23 @@ Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stre
     const SurfacePoint& p = vertex.point;
     if (!p.front && attenuates(*p.material)) path.throughput *= transmittance(*p.material, path.hit.t);
     vertex.w_out = p.frame.to_local(w_out);
-    vertex.bsdf = make_bsdf(t.scene, p, t.masking, p.material->transmission > 0 ? stream.next1(Dim::blend, path.depth) : 0.0f);
+    if (const Bsdf* uniform = t.uniform_bsdfs.find(p)) {
+        vertex.bsdf = *uniform;
+    } else {
+        const float u = p.material->transmission > 0 ? stream.next1(Dim::blend, path.depth) : 0.0f;
+        vertex.bsdf = make_bsdf(t.scene, p, t.masking, u);
+    }
     return vertex;
 }
 
-bool extend_path(const Transport& t, PathState& path, const Vertex& vertex, const SampleStream& stream, RayPurpose purpose,
-                 RayCounts& rays) {
-    const BsdfRandom u{stream.next1(Dim::lobe, path.depth), stream.next2(Dim::direction, path.depth)};
+void scatter_path(PathState& path, const Vertex& vertex, const SampleStream& stream) {
+    path.alive = false;
+    const BsdfRandom u{has_lobes(vertex.bsdf) ? stream.next1(Dim::lobe, path.depth) : 0.0f, stream.next2(Dim::direction, path.depth)};
     const auto scattered = sample(vertex.bsdf, vertex.w_out, u);
-    if (!scattered || is_black(scattered->weight)) return false;
+    if (!scattered || is_black(scattered->weight)) return;
     const WorldDir w_in = vertex.point.frame.to_world(scattered->w_in);
-    if (!sides_agree(vertex.point, w_in)) return false;
+    if (!sides_agree(vertex.point, w_in)) return;
+    path.alive = true;
     path.throughput *= scattered->weight;
     path.eta_scale *= sqr(scattered->eta);
     path.bsdf_pdf = scattered->delta ? 0 : scattered->pdf;
@@ -52,9 +125,6 @@ bool extend_path(const Transport& t, PathState& path, const Vertex& vertex, cons
     ++path.depth;
     path.count_emission = true;
     path.ray = {ray_origin(vertex.point, w_in), w_in, infinity, stream.bits(Dim::opacity, 2 * path.depth)};
-    rays.add(purpose);
-    path.hit = t.tracer.closest_hit(path.ray);
-    return true;
 }
 
 Spectrum arriving_emission(const Transport& t, const PathState& path, const SurfacePoint* hit_point) {
@@ -64,22 +134,16 @@ Spectrum arriving_emission(const Transport& t, const PathState& path, const Surf
     return emitted * mis_weight(path.bsdf_pdf, light_pdf);
 }
 
-SplitRadiance path_radiance(const Transport& t, PathState path, std::uint32_t max_depth, const SampleStream& stream, RayCounts& rays) {
-    SplitRadiance sum;
-    while (path.depth < depth_of_no_return) {
-        if (!path.hit) {
-            if (path.count_emission) add(sum, path.scatterings, path.throughput * arriving_emission(t, path, nullptr));
-            break;
-        }
-        const Vertex vertex = make_vertex(t, path, stream);
-        if (path.count_emission) add(sum, path.scatterings, path.throughput * arriving_emission(t, path, &vertex.point));
-        if (path.depth >= max_depth) break;
-        if (!is_delta(vertex.bsdf))
-            add(sum, path.scatterings + 1, path.throughput * sampled_direct_light(t, vertex, stream, path.depth, rays));
-        if (!extend_path(t, path, vertex, stream, RayPurpose::bounce, rays)) break;
-        if (!survives(path, stream.next1(Dim::roulette, path.depth))) break;
+RadiancePacket path_radiance(const Transport& t, PathPacket paths, std::uint32_t max_depth, const StreamPacket& streams, RayCounts& rays) {
+    RadiancePacket sums;
+    while (std::ranges::any_of(paths, &PathState::alive)) {
+        ShadowPacket shadows;
+        for (std::size_t i = 0; i < packet_size; ++i)
+            if (paths[i].alive) advance(t, paths[i], max_depth, streams[i], sums[i], shadows, i);
+        add_unshadowed(t, shadows, sums, rays);
+        trace_bounces(t, paths, rays);
     }
-    return sum;
+    return sums;
 }
 
 }  // namespace relumine

@@ -19,21 +19,26 @@ struct PathState {
     float eta_scale = 1;         // undoes what refraction did to the throughput, for Russian roulette
     float bsdf_pdf = 0;          // of the ray's direction, per steradian; 0: light sampling could not have found it (camera, delta)
     bool count_emission = true;  // whether what `hit` emits (or the environment at a miss) is still to be counted
+    bool alive = true;           // whether there is anything to follow
 };
 
 inline constexpr std::uint32_t unlimited_depth = 0xffffffffu;
 
-/// Radiance along the path's ray from `hit` on: next-event estimation with MIS, BSDF sampling, Russian roulette from the
-/// fifth vertex on. Unbiased for paths of up to `max_depth` scattering vertices in all.
-[[nodiscard]] SplitRadiance path_radiance(const Transport& t, PathState path, std::uint32_t max_depth, const SampleStream& stream,
-                                          RayCounts& rays);
+using PathPacket = std::array<PathState, packet_size>;
+using StreamPacket = std::array<SampleStream, packet_size>;
+using RadiancePacket = std::array<SplitRadiance, packet_size>;
+
+/// Radiance along each living path's ray from its hit on: next-event estimation with MIS, BSDF sampling, Russian roulette from the
+/// fifth vertex on. Unbiased for paths of up to `max_depth` scattering vertices in all. The paths are followed in step, so that
+/// their rays are traced as packets; the same sixteen paths must always go together.
+[[nodiscard]] RadiancePacket path_radiance(const Transport& t, PathPacket paths, std::uint32_t max_depth, const StreamPacket& streams,
+                                           RayCounts& rays);
 
 /// The vertex where the path's ray has hit; attenuates the throughput where the ray went through a solid.
 [[nodiscard]] Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stream);
 
-/// Continues the path in a direction drawn from the BSDF and traces it. False where it ends.
-[[nodiscard]] bool extend_path(const Transport& t, PathState& path, const Vertex& vertex, const SampleStream& stream,
-                               RayPurpose purpose, RayCounts& rays);
+/// Turns the path's ray into a direction drawn from the BSDF; the hit is not known yet. Where the path ends, it is not alive after.
+void scatter_path(PathState& path, const Vertex& vertex, const SampleStream& stream);
 
 /// What the path's ray brings straight from a light: emission at the hit, or the environment at a miss.
 [[nodiscard]] Spectrum arriving_emission(const Transport& t, const PathState& path, const SurfacePoint* hit_point);

@@ -4,6 +4,7 @@
 
 #include "shading/bsdf.hpp"
 #include "shading/light_sampler.hpp"
+#include "shading/material.hpp"
 #include "trace/tracer.hpp"
 
 namespace relumine {
@@ -13,6 +14,7 @@ struct Transport {
     const SceneData& scene;
     const Tracer& tracer;
     const LightSampler& lights;
+    const UniformBsdfs& uniform_bsdfs;
     Masking masking = Masking::correlated;
 };
 

@@ -34,7 +34,7 @@ class Checker {
             const GltfField& member = field.fields[i];
             const std::string name{member.name};
             const auto it = value.find(name);
-            const std::string member_place = place.empty() ? name : place + '.' + name;
+            const std::string member_place = fmt::format("{}{}{}", place, place.empty() ? "" : ".", name);
             if (it != value.end())
                 copy[name] = checked(*it, member, member_place);
             else if (member.required)

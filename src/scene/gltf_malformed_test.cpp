@@ -46,19 +46,19 @@ Damage set(const std::string& name, const std::string& pointer, const json& valu
 }
 Damage with_material(const std::string& name, const json& material, const std::string& place) {
     return {name, place, [=](GltfBuilder& b) {
-                b.document["materials"] = {material};
+                b.document["materials"] = json::array({material});
                 b.primitive()["material"] = 0;
             }};
 }
 Damage with_light(const std::string& name, const json& light, const std::string& place) {
     return {name, place, [=](GltfBuilder& b) {
-                b.document["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+                b.document["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
                 b.document["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
             }};
 }
 Damage with_camera(const std::string& name, const json& camera, const std::string& place) {
     return {name, place, [=](GltfBuilder& b) {
-                b.document["cameras"] = {camera};
+                b.document["cameras"] = json::array({camera});
                 b.document["nodes"][0]["camera"] = 0;
             }};
 }
@@ -77,7 +77,7 @@ Damage with_sparse(const std::string& name, const json& sparse, const std::strin
 }
 Damage with_image(const std::string& name, const json& image, const std::string& place) {
     return {name, place, [=](GltfBuilder& b) {
-                b.document["images"] = {image};
+                b.document["images"] = json::array({image});
                 b.document["textures"] = {{{"source", 0}}};
                 b.document["materials"] = {{{"emissiveTexture", {{"index", 0}}}}};
                 b.primitive()["material"] = 0;
@@ -286,7 +286,7 @@ std::vector<Damage> content_damages() {
          }},
         {"WrapModeUnknown", "samplers[0]",
          [](GltfBuilder& b) {
-             const int texture = test::add_texture(b);
+             const std::size_t texture = test::add_texture(b);
              b.document["textures"][texture]["sampler"] = b.add("samplers", {{"wrapS", 20000}});
              b.document["materials"] = {{{"emissiveTexture", {{"index", texture}}}}};
          }},

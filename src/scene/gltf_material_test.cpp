@@ -139,7 +139,7 @@ TEST(GltfMaterial, ImagesThatNothingUsesAreNotDecoded) {
 
 TEST(GltfMaterial, ReadsSamplers) {
     GltfBuilder builder = test::triangle_document();
-    const int texture = add_texture(builder);
+    const std::size_t texture = add_texture(builder);
     builder.document["textures"][texture]["sampler"] =
         builder.add("samplers", {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}});
     const auto ref =
@@ -173,7 +173,7 @@ TEST(GltfMaterial, TextureTransformScalesTurnsAndMoves) {
 
 TEST(GltfMaterial, ThirdUvSetIsReplacedWithAWarning) {
     GltfBuilder builder = test::triangle_document();
-    const int texture = add_texture(builder);
+    const std::size_t texture = add_texture(builder);
     const SceneData scene = read(builder, {{"emissiveTexture", {{"index", texture}, {"texCoord", 2}}}});
     EXPECT_EQ(scene.materials.at(0).emission_texture->uv_set, 0);
     ASSERT_EQ(scene.warnings.size(), 1u);

@@ -63,10 +63,10 @@ TEST(GltfReader, MissingIndicesMeanOneAfterTheOther) {
 TEST(GltfReader, ReadsEveryIndexType) {
     for (const int type : {5121, 5123, 5125}) {
         GltfBuilder builder = triangle_document();
-        const int accessor = type == 5121 ? builder.add_accessor<std::uint8_t>({0, 1, 2}, type, "SCALAR", 1)
-                             : type == 5123
-                                 ? builder.add_accessor<std::uint16_t>({0, 1, 2}, type, "SCALAR", 1)
-                                 : builder.add_accessor<std::uint32_t>({0, 1, 2}, type, "SCALAR", 1);
+        const std::size_t accessor =
+            type == 5121   ? builder.add_accessor<std::uint8_t>({0, 1, 2}, type, "SCALAR", 1)
+            : type == 5123 ? builder.add_accessor<std::uint16_t>({0, 1, 2}, type, "SCALAR", 1)
+                           : builder.add_accessor<std::uint32_t>({0, 1, 2}, type, "SCALAR", 1);
         builder.primitive()["indices"] = accessor;
         expect_unit_triangle(read(builder));
     }
@@ -77,7 +77,7 @@ TEST(GltfReader, ReadsInterleavedUnalignedData) {
     std::string bytes = "x";  // one byte before the first vertex, eight behind each
     for (const auto& p : std::vector<std::vector<float>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})
         bytes += test::bytes_of(p) + "12345678";
-    const int view = builder.add_view(bytes);
+    const std::size_t view = builder.add_view(bytes);
     builder.document["bufferViews"][view]["byteStride"] = 20;
     builder.document["accessors"][0]["bufferView"] = view;
     builder.document["accessors"][0]["byteOffset"] = 1;
@@ -87,7 +87,7 @@ TEST(GltfReader, ReadsInterleavedUnalignedData) {
 TEST(GltfReader, StridedAccessorMayEndWithItsLastElement) {
     GltfBuilder builder = triangle_document();
     std::string bytes = test::bytes_of(std::vector<float>{0, 0, 0, 9, 1, 0, 0, 9, 0, 1, 0});
-    const int view = builder.add_view(bytes);
+    const std::size_t view = builder.add_view(bytes);
     builder.document["bufferViews"][view]["byteStride"] = 16;
     builder.document["accessors"][0]["bufferView"] = view;
     expect_unit_triangle(read(builder));
@@ -95,12 +95,12 @@ TEST(GltfReader, StridedAccessorMayEndWithItsLastElement) {
 
 TEST(GltfReader, ScalesNormalizedIntegers) {
     GltfBuilder builder = triangle_document();
-    const int colors =
+    const std::size_t colors =
         builder.add_accessor<std::uint8_t>({255, 0, 51, 255, 0, 0, 0, 0, 0, 0, 0, 0}, 5121, "VEC4", 4);
-    const int uvs = builder.add_accessor<std::uint16_t>({65535, 0, 0, 0, 0, 0}, 5123, "VEC2", 2);
-    const int normals =
+    const std::size_t uvs = builder.add_accessor<std::uint16_t>({65535, 0, 0, 0, 0, 0}, 5123, "VEC2", 2);
+    const std::size_t normals =
         builder.add_accessor<std::int8_t>({-128, 127, 0, 0, 0, 127, 0, 0, 127}, 5120, "VEC3", 3);
-    for (const int accessor : {colors, uvs, normals})
+    for (const std::size_t accessor : {colors, uvs, normals})
         builder.document["accessors"][accessor]["normalized"] = true;
     builder.attributes()["COLOR_0"] = colors;
     builder.attributes()["TEXCOORD_1"] = uvs;

@@ -65,28 +65,28 @@ struct GltfBuilder {
     nlohmann::json document = {{"asset", {{"version", "2.0"}}}};
     std::string binary;
 
-    int add(const char* array, nlohmann::json element) {
+    std::size_t add(const char* array, nlohmann::json element) {
         document[array].push_back(std::move(element));
-        return static_cast<int>(document[array].size()) - 1;
+        return document[array].size() - 1;
     }
-    int add_view(std::string_view bytes) {
+    std::size_t add_view(std::string_view bytes) {
         binary.resize((binary.size() + 3) / 4 * 4);
         const std::size_t offset = binary.size();
         binary += bytes;
         return add("bufferViews", {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes.size()}});
     }
     template <typename T>
-    int add_accessor(const std::vector<T>& values, int component_type, const char* type,
-                     std::size_t components) {
+    std::size_t add_accessor(const std::vector<T>& values, int component_type, const char* type,
+                             std::size_t components) {
         return add("accessors", {{"bufferView", add_view(bytes_of(values))},
                                  {"componentType", component_type},
                                  {"count", values.size() / components},
                                  {"type", type}});
     }
-    int add_vec2(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC2", 2); }
-    int add_vec3(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC3", 3); }
-    int add_vec4(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC4", 4); }
-    int add_indices(const std::vector<std::uint16_t>& values) {
+    std::size_t add_vec2(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC2", 2); }
+    std::size_t add_vec3(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC3", 3); }
+    std::size_t add_vec4(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC4", 4); }
+    std::size_t add_indices(const std::vector<std::uint16_t>& values) {
         return add_accessor(values, 5123, "SCALAR", 1);
     }
 
@@ -117,8 +117,8 @@ struct GltfBuilder {
 /// accessors[1].
 inline GltfBuilder triangle_document() {
     GltfBuilder builder;
-    const int positions = builder.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0});
-    const int indices = builder.add_indices({0, 1, 2});
+    const std::size_t positions = builder.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const std::size_t indices = builder.add_indices({0, 1, 2});
     builder.add("meshes",
                 {{"name", "triangle"},
                  {"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}});
@@ -140,8 +140,8 @@ inline std::string red_png() {
 }
 
 /// Adds an image from a buffer view, and a texture of it; returns the texture.
-inline int add_texture(GltfBuilder& builder) {
-    const int image =
+inline std::size_t add_texture(GltfBuilder& builder) {
+    const std::size_t image =
         builder.add("images", {{"bufferView", builder.add_view(red_png())}, {"mimeType", "image/png"}});
     return builder.add("textures", {{"source", image}});
 }

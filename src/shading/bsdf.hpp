@@ -95,6 +95,11 @@ inline bool is_delta(const Bsdf& bsdf) {
     return std::holds_alternative<Mirror>(bsdf) || std::holds_alternative<SmoothDielectric>(bsdf);
 }
 
+/// Whether `sample` chooses between lobes, and so looks at BsdfRandom::lobe.
+inline bool has_lobes(const Bsdf& bsdf) {
+    return !std::holds_alternative<Lambert>(bsdf) && !std::holds_alternative<RoughConductor>(bsdf);
+}
+
 /// The probability with which `sample` draws a delta lobe of a BSDF that may have others.
 [[nodiscard]] float delta_probability(const Bsdf& bsdf, LocalDir w_out);
 

@@ -58,7 +58,6 @@ LightSampler::LightSampler(const SceneData& scene, const LightSelection& selecti
     for (const double power : powers) local_power += power;
     if (local_power > 0) {
         local_cdf_ = normalised_cdf(powers);
-        for (std::size_t i = 0; i < triangles_.size(); ++i) triangles_[i].probability = local_cdf_[i + 1] - local_cdf_[i];
     }
 
     double environment_power = 0;
@@ -73,6 +72,8 @@ LightSampler::LightSampler(const SceneData& scene, const LightSelection& selecti
                                                     : std::clamp(static_cast<float>(environment_power / (environment_power + local_power)),
                                                                  min_group_share, 1 - min_group_share);
     if (local_power > 0) local_probability_ = 1 - environment_probability_;
+    for (std::size_t i = 0; i < triangles_.size() && local_power > 0; ++i)
+        triangles_[i].probability = local_probability_ * (local_cdf_[i + 1] - local_cdf_[i]);
 }
 
 void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& selection, std::vector<double>& powers) {
@@ -85,7 +86,8 @@ void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& 
         const auto [a, b, c] = world_triangle(scene_, i, t);
         const Vec3 normal = cross(b - a, c - a) * winding;
         const float area = 0.5f * length(normal);
-        triangles_.push_back({a, b - a, c - a, area > 0 ? normalize(normal) : normal, area, 0, i, t, material.double_sided});
+        triangles_.push_back({a, b - a, c - a, area > 0 ? normalize(normal) : normal, area, 0, rounding_offset({a, b, c}),
+                              i, t, material.double_sided});
         local_.push_back({Kind::triangle, static_cast<std::uint32_t>(triangles_.size() - 1)});
         powers.push_back(double{pi} * area * mean_emission(scene_, mesh, t) * (material.double_sided ? 2 : 1));
     }
@@ -112,7 +114,7 @@ float LightSampler::triangle_density(const EmissiveTriangle& light, Vec3 from, V
     const float distance2 = length_squared(to_light);
     const float cosine = std::abs(dot(to_light, light.normal)) / std::sqrt(distance2);
     if (!(cosine > 0) || light.area <= 0) return 0;
-    return local_probability_ * light.probability * distance2 / (light.area * cosine);
+    return light.probability * distance2 / (light.area * cosine);
 }
 
 std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle& light, Vec3 from, Point2 u) const {
@@ -132,8 +134,7 @@ std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle&
         const TextureCoordinates at = texture_coordinates(mesh, hit);
         radiance = material_emission(scene_, material, at.uv) * opacity(scene_, material, at);
     }
-    const float offset = rounding_offset({light.corner, light.corner + light.edge1, light.corner + light.edge2});
-    return LightSample{{to_light / distance}, point + light.normal * (front ? offset : -offset), distance, radiance, density};
+    return LightSample{{to_light / distance}, point + light.normal * (front ? light.offset : -light.offset), distance, radiance, density};
 }
 
 std::optional<LightSample> LightSampler::sample_local(Vec3 from, float u_choice, Point2 u) const {

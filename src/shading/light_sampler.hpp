@@ -51,7 +51,8 @@ class LightSampler {
     struct EmissiveTriangle {
         Vec3 corner, edge1, edge2;  // world space
         Vec3 normal;                // unit, front
-        float area, probability;    // probability among local lights
+        float area, probability;    // metres²; probability among all lights
+        float offset;               // metres along the normal that clear rounding errors
         std::uint32_t instance, triangle;
         bool double_sided;
     };

@@ -66,6 +66,16 @@ Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, f
     return opaque_layers(f, glass_share > 0 ? f.metallic / (1 - glass_share) : f.metallic, p.material->ior, masking);
 }
 
+UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(scene.materials.data()) {
+    for (const Material& m : scene.materials) {
+        const bool varies = m.base_color_texture || m.metallic_roughness_texture || m.transmission_texture || m.specular_texture
+                            || m.specular_color_texture || m.transmission > 0;
+        SurfacePoint anywhere;
+        anywhere.material = &m;
+        bsdfs_.push_back(varies ? std::nullopt : std::optional(make_bsdf(scene, anywhere, masking, 0)));
+    }
+}
+
 Spectrum material_emission(const SceneData& scene, const Material& material, const std::array<Vec2, 2>& uv) {
     if (!material.emission_texture || is_black(material.emission)) return material.emission;
     return material.emission * rgb(sample_texture(scene, *material.emission_texture, uv, Encoding::srgb));

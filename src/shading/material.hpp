@@ -2,6 +2,8 @@
 // From a material's factors and textures at a point to the models that scatter and emit light there.
 #pragma once
 
+#include <vector>
+
 #include "shading/bsdf.hpp"
 #include "shading/surface_point.hpp"
 
@@ -9,6 +11,22 @@ namespace relumine {
 
 /// The BSDF at `p`. Where a material is partly transmissive, `u` in [0, 1) decides whether this is glass or the opaque layering.
 [[nodiscard]] Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u);
+
+/// The BSDFs of the materials that are the same everywhere and from both sides, made once.
+class UniformBsdfs {
+  public:
+    UniformBsdfs(const SceneData& scene, Masking masking);
+
+    /// Null where the BSDF depends on the point.
+    [[nodiscard]] const Bsdf* find(const SurfacePoint& p) const {
+        const auto& bsdf = bsdfs_[static_cast<std::size_t>(p.material - first_)];
+        return bsdf && !p.has_vertex_color ? &*bsdf : nullptr;
+    }
+
+  private:
+    const Material* first_;
+    std::vector<std::optional<Bsdf>> bsdfs_;  // per material
+};
 
 /// Radiance that the surface emits towards the viewer of `p`, W·sr⁻¹·m⁻².
 [[nodiscard]] Spectrum emitted_radiance(const SceneData& scene, const SurfacePoint& p);

@@ -29,23 +29,22 @@ std::array<Vec2, 2> interpolate_uv(const Mesh& mesh, const Triangle& triangle, c
     return uv;
 }
 
-/// Object-space normals and tangents to world space (up to length).
+/// Object-space normals and tangents to world space (up to length). Copies nothing where the mesh is in world space already.
 class NormalMapper {
   public:
-    explicit NormalMapper(const Instance& instance) : instance_(instance) {
-        if (instance.identity) return;
-        cofactor_ = cofactor(instance.world_from_object);
-        if (determinant(instance.world_from_object) < 0) sign_ = -1;
+    explicit NormalMapper(const Instance& instance) : instance_(instance) {}
+
+    [[nodiscard]] Vec3 normal(Vec3 n) const {
+        return instance_.identity ? n : cofactor(instance_.world_from_object).vector(n) * winding();
     }
-    [[nodiscard]] Vec3 normal(Vec3 n) const { return instance_.identity ? n : cofactor_.vector(n) * sign_; }
     [[nodiscard]] Vec3 tangent(Vec3 t) const { return instance_.identity ? t : instance_.world_from_object.vector(t); }
     /// The sign of a normal from transformed corners against the one of the mesh's own winding.
-    [[nodiscard]] float winding() const { return sign_; }
+    [[nodiscard]] float winding() const {
+        return instance_.identity || determinant(instance_.world_from_object) > 0 ? 1.0f : -1.0f;
+    }
 
   private:
     const Instance& instance_;
-    Transform cofactor_;
-    float sign_ = 1;
 };
 
 /// The normal that a normal map asks for, unnormalised [glTF 2.0, §3.9.3].
@@ -127,7 +126,8 @@ SurfacePoint surface_point(const SceneData& scene, const Hit& hit, WorldDir w_ou
     p.triangle = hit.triangle;
     p.offset = rounding_offset(corners);
     p.uv = interpolate_uv(mesh, triangle, hit);
-    if (!mesh.colors.empty()) {
+    p.has_vertex_color = !mesh.colors.empty();
+    if (p.has_vertex_color) {
         const auto color = [&](std::size_t i) {
             const auto& c = mesh.colors[triangle.vertex[i]];
             return Spectrum{c[0], c[1], c[2]};

@@ -13,6 +13,7 @@ struct SurfacePoint {
     Frame frame;             // shading frame; n on the viewer's side and turned so that the viewer is above it
     std::array<Vec2, 2> uv;  // texture coordinates, 0 where the mesh has none
     Spectrum vertex_color{1};
+    bool has_vertex_color = false;
     const Material* material = nullptr;  // never null
     std::uint32_t instance = 0, triangle = 0;
     float offset = 0;        // metres along the geometric normal that clear the rounding errors of `position`

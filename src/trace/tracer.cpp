@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "base/hash.hpp"
@@ -33,6 +34,7 @@ using Geometry = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
 
 /// The builder cuts its work by the number of task slots, and the tree's shape decides between hits at exactly equal distances:
 /// a constant makes the tree the same on every machine, whatever the number of threads that really work.
+constexpr std::size_t build_slots = 8;
 constexpr const char* device_options = "threads=8,start_threads=0,set_affinity=0";
 
 void throw_on_error(RTCDevice device, const char* doing) {
@@ -66,11 +68,20 @@ void occluded1(RTCScene scene, RTCRay* query) {
     arguments.context = &context;
     rtcOccluded1(scene, query, &arguments);
 }
-void intersect16(RTCScene scene, const int* valid, RTCRayHit16* query) {
+void intersect16(RTCScene scene, const int* valid, RTCRayHit16* query, Coherence coherence) {
     QueryContext context;
     init_context(&context);
-    RTCIntersectArguments arguments = intersect_arguments(&context, RTC_RAY_QUERY_FLAG_COHERENT);
+    RTCIntersectArguments arguments = intersect_arguments(
+        &context, coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT);
     rtcIntersect16(valid, scene, query, &arguments);
+}
+void occluded16(RTCScene scene, const int* valid, RTCRay16* query) {
+    QueryContext context;
+    init_context(&context);
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context;
+    rtcOccluded16(valid, scene, query, &arguments);
 }
 #else
 using QueryContext = RTCIntersectContext;
@@ -84,11 +95,16 @@ void occluded1(RTCScene scene, RTCRay* query) {
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene, &context, query);
 }
-void intersect16(RTCScene scene, const int* valid, RTCRayHit16* query) {
+void intersect16(RTCScene scene, const int* valid, RTCRayHit16* query, Coherence coherence) {
     QueryContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    if (coherence == Coherence::coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcIntersect16(valid, scene, &context, query);
+}
+void occluded16(RTCScene scene, const int* valid, RTCRay16* query) {
+    QueryContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded16(valid, scene, &context, query);
 }
 #endif
 
@@ -105,6 +121,29 @@ void set_ray(RTCRay& query, const Ray& ray) {
     query.mask = 0xffffffffu;
     query.id = ray.opacity_seed;
     query.flags = 0;
+}
+
+using PacketMask = std::array<int, packet_size>;
+
+/// Fills a packet; the mask tells Embree which lanes count.
+PacketMask set_rays(RTCRay16& query, std::span<const Ray, packet_size> rays) {
+    PacketMask valid;
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        valid[i] = rays[i].t_max >= 0 ? -1 : 0;
+        query.org_x[i] = rays[i].origin.x;
+        query.org_y[i] = rays[i].origin.y;
+        query.org_z[i] = rays[i].origin.z;
+        query.dir_x[i] = rays[i].direction.v.x;
+        query.dir_y[i] = rays[i].direction.v.y;
+        query.dir_z[i] = rays[i].direction.v.z;
+        query.tnear[i] = 0;
+        query.tfar[i] = rays[i].t_max;
+        query.time[i] = 0;
+        query.mask[i] = 0xffffffffu;
+        query.id[i] = rays[i].opacity_seed;
+        query.flags[i] = 0;
+    }
+    return valid;
 }
 
 std::uint32_t instance_of(unsigned geometry, unsigned instance) {
@@ -212,9 +251,8 @@ struct Tracer::Impl {
     }
 };
 
-Tracer::Tracer(const SceneData& scene, OpacityFunction opacity, int threads)
-    : impl_(std::make_unique<Impl>(scene, std::move(opacity))) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+Tracer::Tracer(const SceneData& scene, OpacityFunction opacity) : impl_(std::make_unique<Impl>(scene, std::move(opacity))) {
+    const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, build_slots + 1);
     impl_->build();
 }
 
@@ -237,33 +275,25 @@ bool Tracer::occluded(const Ray& ray) const {
     return query.tfar < 0;
 }
 
-void Tracer::closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits) const {
-    alignas(64) std::array<int, packet_size> valid;
+void Tracer::closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits, Coherence coherence) const {
     alignas(64) RTCRayHit16 query;
-    for (std::size_t i = 0; i < packet_size; ++i) {
-        valid[i] = rays[i].t_max >= 0 ? -1 : 0;
-        query.ray.org_x[i] = rays[i].origin.x;
-        query.ray.org_y[i] = rays[i].origin.y;
-        query.ray.org_z[i] = rays[i].origin.z;
-        query.ray.dir_x[i] = rays[i].direction.v.x;
-        query.ray.dir_y[i] = rays[i].direction.v.y;
-        query.ray.dir_z[i] = rays[i].direction.v.z;
-        query.ray.tnear[i] = 0;
-        query.ray.tfar[i] = rays[i].t_max;
-        query.ray.time[i] = 0;
-        query.ray.mask[i] = 0xffffffffu;
-        query.ray.id[i] = rays[i].opacity_seed;
-        query.ray.flags[i] = 0;
-        query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
-    intersect16(impl_->top.get(), valid.data(), &query);
+    alignas(64) const PacketMask valid = set_rays(query.ray, rays);
+    std::ranges::fill(query.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+    std::ranges::fill(query.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+    intersect16(impl_->top.get(), valid.data(), &query, coherence);
     for (std::size_t i = 0; i < packet_size; ++i) {
         hits[i] = {};
         if (query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
         hits[i] = {query.ray.tfar[i], query.hit.u[i], query.hit.v[i],
                    instance_of(query.hit.geomID[i], query.hit.instID[0][i]), query.hit.primID[i]};
     }
+}
+
+void Tracer::occluded(std::span<const Ray, packet_size> rays, std::span<bool, packet_size> blocked) const {
+    alignas(64) RTCRay16 query;
+    alignas(64) const PacketMask valid = set_rays(query, rays);
+    occluded16(impl_->top.get(), valid.data(), &query);
+    for (std::size_t i = 0; i < packet_size; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0;
 }
 
 }  // namespace relumine

@@ -33,6 +33,9 @@ struct Hit {
 
 inline constexpr std::size_t packet_size = 16;
 
+/// Whether the rays of a packet start and point nearly alike, as camera rays do: a hint for speed.
+enum class Coherence { coherent, incoherent };
+
 /// The opacity in [0, 1] of a point on a triangle (fields t unset).
 using OpacityFunction = std::function<float(const Hit&)>;
 
@@ -43,7 +46,7 @@ using OpacityFunction = std::function<float(const Hit&)>;
 class Tracer {
   public:
     /// Builds over `scene`, which must outlive the tracer. `opacity` is asked for materials whose alpha mode is not opaque.
-    Tracer(const SceneData& scene, OpacityFunction opacity, int threads);
+    Tracer(const SceneData& scene, OpacityFunction opacity);
     ~Tracer();
     Tracer(const Tracer&) = delete;
     Tracer& operator=(const Tracer&) = delete;
@@ -51,9 +54,10 @@ class Tracer {
     [[nodiscard]] Hit closest_hit(const Ray& ray) const;
     [[nodiscard]] bool occluded(const Ray& ray) const;
 
-    /// Sixteen rays at once: faster where they are coherent, such as camera rays. Rays with t_max < 0 are left out. A lane's last
-    /// digits may depend on its neighbours, so a packet must always be traced with the same sixteen rays.
-    void closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits) const;
+    /// Sixteen rays at once. Rays with t_max < 0 are left out. A lane's last digits may depend on its neighbours, so a packet must
+    /// always be traced with the same sixteen rays. Lanes that are left out have no hit and are not occluded.
+    void closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits, Coherence coherence) const;
+    void occluded(std::span<const Ray, packet_size> rays, std::span<bool, packet_size> blocked) const;
 
   private:
     struct Impl;
