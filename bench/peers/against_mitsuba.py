@@ -209,7 +209,8 @@ def words(text):
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=pathlib.Path, help="holds NAME/NAME.glb, NAME/environment.exr, NAME/blocks-mean.pfm")
+    parser.add_argument("folder", type=pathlib.Path,
+                        help="holds NAME/NAME.glb, NAME/environment.exr, NAME/blocks-mean.pfm")
     parser.add_argument("--scene", action="append", help="NAME; may be repeated (default: all)")
     parser.add_argument("--relumine", default="build/release/relumine", help="the command (default: %(default)s)")
     parser.add_argument("--spp", type=int, default=64, help="samples per pixel (default: %(default)s)")
@@ -220,10 +221,12 @@ def parse_arguments():
     parser.add_argument("--samplers", type=words, default=["sobol"], help="ours, with commas (default: sobol)")
     parser.add_argument("--peer-samplers", type=words, default=["independent", "multijitter"],
                         help="Mitsuba's, with commas (default: independent,multijitter)")
-    parser.add_argument("--bsdf", choices=("python", "principled"), default="python", help="metal in Mitsuba, see README.md")
+    parser.add_argument("--bsdf", choices=("python", "principled"), default="python",
+                        help="metal in Mitsuba, see README.md")
     parser.add_argument("--exclude-above", type=float, default=3, help="radiance of blocks that show the light; "
                         "they and their neighbours are left out, unless there is an environment (default: %(default)s)")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/peers"), help="folder (default: %(default)s)")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/peers"),
+                        help="folder (default: %(default)s)")
     args = parser.parse_args()
     if args.seeds < 3:
         parser.error(f"--seeds: expected at least 3, found {args.seeds}")
@@ -234,7 +237,8 @@ def main():
     args = parse_arguments()
     names = args.scene or sorted(p.parent.name for p in args.folder.glob("*/*.glb") if p.stem == p.parent.name)
     version = subprocess.run([args.relumine, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout
-    run = {"relumine": version.split()[-1], "mitsuba": mi.__version__, "cpu": cpu_model(), "load_before": os.getloadavg()[0],
+    run = {"relumine": version.split()[-1], "mitsuba": mi.__version__, "cpu": cpu_model(),
+           "load_before": os.getloadavg()[0],
            **{key: getattr(args, key) for key in ("size", "spp", "seeds", "threads", "max_depth", "bsdf")}}
     with tempfile.TemporaryDirectory() as args.scratch:
         result = {"run": run, "scenes": [measure_scene(args.folder / name, args) for name in names]}

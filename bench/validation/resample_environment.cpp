@@ -9,11 +9,11 @@
 
 namespace {
 
-constexpr int rows_per_row =
-    16;  // of the result: its linear interpolation rounds off kinks by 0.01 % (4: 0.2 %)
+/// Of the result: its linear interpolation rounds off the kinks between rows by 0.01 % (0.2 % with 4).
+constexpr int rows_per_row = 16;
 
-/// Of `height` rows, Mitsuba 3 puts the first at v = 0 and the last at v = 1: row coordinate v · (height −
-/// 1). We put row j at v = (j + ½) / height, as columns are in both.
+/// Of H rows, Mitsuba 3 puts the first at v = 0 and the last at v = 1: row coordinate v · (H − 1). We put row
+/// j at v = (j + ½) / H, as both do with columns.
 relumine::Image resampled(const relumine::Image& source) {
     const int width = source.width, height = rows_per_row * source.height;
     relumine::Layer layer{"", {"R", "G", "B"}, {}};
