@@ -20,14 +20,16 @@
 namespace relumine {
 namespace {
 
-constexpr int tile_side = 16;        // pixels; a multiple of the packets' blocks
-constexpr int default_width = 1024;  // pixels
+constexpr int tile_side = 16;               // pixels; a multiple of the packets' blocks
+constexpr int default_width = 1024;         // pixels
 constexpr std::uint32_t longest_pass = 64;  // samples per pixel
 
 double cpu_seconds() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -69,7 +71,8 @@ class Monitor {
         stage_.rays = rays_.total();
         stage_.seconds = seconds();
         const double spent = stage_.seconds - stage_begin_;
-        stage_.seconds_left = spent * static_cast<double>(stage_.total - stage_.done) / static_cast<double>(stage_.done);
+        stage_.seconds_left =
+            spent * static_cast<double>(stage_.total - stage_.done) / static_cast<double>(stage_.done);
         observer_->tile_finished(tile.rect);
         observer_->progress(stage_);
     }
@@ -79,7 +82,8 @@ class Monitor {
         stats.stage_seconds = stages_;
         stats.total_seconds = seconds();
         stats.cpu_seconds = cpu_seconds() - cpu_begin_;
-        for (std::size_t i = 0; i < ray_purpose_names.size(); ++i) stats.rays[ray_purpose_names[i]] = rays_.by_purpose[i];
+        for (std::size_t i = 0; i < ray_purpose_names.size(); ++i)
+            stats.rays[ray_purpose_names[i]] = rays_.by_purpose[i];
         stats.total_rays = rays_.total();
         stats.non_finite_samples = non_finite_;
         if (first_non_finite_)
@@ -124,8 +128,10 @@ const Camera& find_camera(const SceneData& scene, const std::string& wanted) {
     }
     std::size_t number = 0;
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-    if (error == std::errc{} && end == wanted.data() + wanted.size() && number < scene.cameras.size()) return scene.cameras[number];
-    throw SettingsError{expected_found("camera", fmt::format("{} or an index below {}", one_of(names), names.size()),
+    if (error == std::errc{} && end == wanted.data() + wanted.size() && number < scene.cameras.size())
+        return scene.cameras[number];
+    throw SettingsError{expected_found("camera",
+                                       fmt::format("{} or an index below {}", one_of(names), names.size()),
                                        "\"" + wanted + "\"" + did_you_mean(wanted, names))};
 }
 
@@ -144,7 +150,8 @@ PixelRect crop_window(const RenderSettings& settings, FrameSize frame) {
     if (!settings.crop) return whole;
     const PixelRect& c = *settings.crop;
     if (!c.empty() && c.x0 >= 0 && c.y0 >= 0 && c.x1 <= frame.width && c.y1 <= frame.height) return c;
-    throw SettingsError{expected_found("crop", fmt::format("a rectangle inside 0 0 {} {}", frame.width, frame.height),
+    throw SettingsError{expected_found("crop",
+                                       fmt::format("a rectangle inside 0 0 {} {}", frame.width, frame.height),
                                        fmt::format("{} {} {} {}", c.x0, c.y0, c.x1, c.y1))};
 }
 
@@ -169,8 +176,8 @@ std::vector<PixelRect> tiles_of(const PixelRect& window) {
     std::vector<PixelRect> tiles;
     for (int y = window.y0 / tile_side * tile_side; y < window.y1; y += tile_side)
         for (int x = window.x0 / tile_side * tile_side; x < window.x1; x += tile_side)
-            tiles.push_back({std::max(x, window.x0), std::max(y, window.y0), std::min(x + tile_side, window.x1),
-                             std::min(y + tile_side, window.y1)});
+            tiles.push_back({std::max(x, window.x0), std::max(y, window.y0),
+                             std::min(x + tile_side, window.x1), std::min(y + tile_side, window.y1)});
     return tiles;
 }
 
@@ -190,12 +197,13 @@ std::vector<Pass> passes_of(std::uint32_t samples) {
 }
 
 std::uint64_t work_of(const PixelRect& tile, const Pass& pass) {
-    return static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()) * pass.sample_count;
+    return static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height())
+           * pass.sample_count;
 }
 
 /// One pass over all tiles; false where it was stopped on the way.
-bool render_pass(const Integrator& integrator, const std::vector<PixelRect>& tiles, const Pass& pass, int threads, Film& film,
-                 Monitor& monitor) {
+bool render_pass(const Integrator& integrator, const std::vector<PixelRect>& tiles, const Pass& pass,
+                 int threads, Film& film, Monitor& monitor) {
     parallel_for(threads, tiles.size(), [&](std::size_t i) {
         if (monitor.stop()) return;
         Tile tile = make_tile(tiles[i], pass.first_sample, pass.sample_count);
@@ -206,13 +214,14 @@ bool render_pass(const Integrator& integrator, const std::vector<PixelRect>& til
     return !monitor.stop();
 }
 
-void render_passes(const Integrator& integrator, const PixelRect& window, std::uint32_t samples, int threads, Film& film,
-                   Monitor& monitor) {
+void render_passes(const Integrator& integrator, const PixelRect& window, std::uint32_t samples, int threads,
+                   Film& film, Monitor& monitor) {
     const std::vector<PixelRect> tiles = tiles_of(window);
     monitor.begin_stage("render", work_of(window, {0, samples}));
     for (const Pass& pass : passes_of(samples)) {
         const bool whole = render_pass(integrator, tiles, pass, threads, film, monitor);
-        if (whole || !film.has_passes()) film.finish_pass();  // stopped in the first pass: better some tiles than none
+        if (whole || !film.has_passes())
+            film.finish_pass();  // stopped in the first pass: better some tiles than none
         if (!whole) break;
     }
     monitor.end_stage();

@@ -17,7 +17,8 @@ constexpr int max_side = 65536;  // pixels
 
 void check_name(const char* setting, const std::string& value, const std::vector<std::string>& known) {
     if (std::ranges::find(known, value) != known.end()) return;
-    throw SettingsError{expected_found(setting, one_of(known), "\"" + value + "\"" + did_you_mean(value, known))};
+    throw SettingsError{
+        expected_found(setting, one_of(known), "\"" + value + "\"" + did_you_mean(value, known))};
 }
 
 void check_range(const char* setting, std::int64_t value, std::int64_t least, std::int64_t most) {
@@ -27,7 +28,8 @@ void check_range(const char* setting, std::int64_t value, std::int64_t least, st
 
 void check_frame(const RenderSettings& s) {
     if ((s.width == 0) != (s.height == 0))
-        throw SettingsError{expected_found("size", "width and height, or neither", fmt::format("{}x{}", s.width, s.height))};
+        throw SettingsError{
+            expected_found("size", "width and height, or neither", fmt::format("{}x{}", s.width, s.height))};
     check_range("width", s.width, 0, max_side);
     check_range("height", s.height, 0, max_side);
 }
@@ -56,8 +58,10 @@ void validate(const RenderSettings& s) {
     check_range("gather rays", s.gather_rays, 1, million);
     check_range("light samples", s.light_samples, 0, million);
     if (s.method == "gather") {  // their numbers are 32-bit indices into one sequence per pixel
-        check_range("gather rays × samples per pixel", std::int64_t{s.gather_rays} * s.samples_per_pixel, 1, max_rays_per_pixel);
-        check_range("light samples × samples per pixel", std::int64_t{s.light_samples} * s.samples_per_pixel, 0, max_rays_per_pixel);
+        check_range("gather rays × samples per pixel", std::int64_t{s.gather_rays} * s.samples_per_pixel, 1,
+                    max_rays_per_pixel);
+        check_range("light samples × samples per pixel", std::int64_t{s.light_samples} * s.samples_per_pixel,
+                    0, max_rays_per_pixel);
     }
     check_range("max depth", s.max_depth, -1, million);
     check_name("radiance", s.radiance, {"auto", "emission", "direct", "path"});

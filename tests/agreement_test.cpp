@@ -36,7 +36,8 @@ std::vector<Estimate> whole(const Scene& scene, const RenderSettings& settings) 
 struct Case {
     const char *scene, *environment;
 };
-constexpr std::array cases{Case{"cornell-glossy.glb", ""}, Case{"validation/room.glb", ""}, Case{"validation/open.glb", "validation/sky.pfm"}};
+constexpr std::array cases{Case{"cornell-glossy.glb", ""}, Case{"validation/room.glb", ""},
+                           Case{"validation/open.glb", "validation/sky.pfm"}};
 
 class Agreement : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, Agreement, ::testing::ValuesIn(cases));

@@ -22,7 +22,8 @@ RenderSettings settings_for(const std::string& method) {
 
 class Determinism : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Determinism,
-                         ::testing::Values(std::pair{"path", "cornell-glossy.glb"}, std::pair{"gather", "cornell-glossy.glb"},
+                         ::testing::Values(std::pair{"path", "cornell-glossy.glb"},
+                                           std::pair{"gather", "cornell-glossy.glb"},
                                            std::pair{"path", "demo.glb"}));
 
 TEST_P(Determinism, ThreadsDoNotChangeABit) {
@@ -34,7 +35,8 @@ TEST_P(Determinism, ThreadsDoNotChangeABit) {
     for (const int threads : {2, 7}) {
         settings.threads = threads;
         const Image many = render(scene, settings);
-        for (std::size_t i = 0; i < one.layers.size(); ++i) EXPECT_EQ(one.layers[i].pixels, many.layers[i].pixels) << one.layers[i].name;
+        for (std::size_t i = 0; i < one.layers.size(); ++i)
+            EXPECT_EQ(one.layers[i].pixels, many.layers[i].pixels) << one.layers[i].name;
     }
 }
 
@@ -49,7 +51,8 @@ TEST_P(Determinism, ACropHasTheBitsOfTheWhole) {
         ASSERT_EQ(part.width, crop.width());
         EXPECT_EQ(part.window, crop);
         for (int y = crop.y0; y < crop.y1; ++y)
-            for (int x = crop.x0; x < crop.x1; ++x) ASSERT_EQ(part.rgb(x - crop.x0, y - crop.y0), whole.rgb(x, y)) << x << " " << y;
+            for (int x = crop.x0; x < crop.x1; ++x)
+                ASSERT_EQ(part.rgb(x - crop.x0, y - crop.y0), whole.rgb(x, y)) << x << " " << y;
     }
 }
 
@@ -67,7 +70,8 @@ TEST(Layers, SplitAddsUpToThePicture) {
     settings.aovs = {"emission", "direct", "indirect", "samples"};
     const Image image = render(project_scene("cornell-glossy.glb"), settings);
     for (std::size_t i = 0; i < image.layer()->pixels.size(); ++i) {
-        const float sum = image.layer("emission")->pixels[i] + image.layer("direct")->pixels[i] + image.layer("indirect")->pixels[i];
+        const float sum = image.layer("emission")->pixels[i] + image.layer("direct")->pixels[i]
+                          + image.layer("indirect")->pixels[i];
         ASSERT_NEAR(sum, image.layer()->pixels[i], 1e-5f * sum + 1e-6f);
     }
     for (const float n : image.layer("samples")->pixels) EXPECT_EQ(n, 3);

@@ -43,7 +43,9 @@ TEST_P(EveryMethod, FurnaceOfLimitedDepthIsItsPartialSum) {  // emission .5, alb
     RenderSettings settings = small(GetParam(), 64);
     for (int depth = 0; depth < 4; ++depth) {
         settings.max_depth = depth;
-        EXPECT_NEAR(mean_of(render(project_scene("furnace-walls-50.glb"), settings)), 1 - std::pow(0.5, depth + 1), 0.003) << depth;
+        EXPECT_NEAR(mean_of(render(project_scene("furnace-walls-50.glb"), settings)),
+                    1 - std::pow(0.5, depth + 1), 0.003)
+            << depth;
     }
 }
 
@@ -57,12 +59,14 @@ TEST_P(EveryMethod, LosslessBodiesVanishInAWhiteSky) {
     for (const char* name : {"furnace-diffuse.glb", "furnace-glass.glb"}) {
         const Image image = render(project_scene(name, "white.pfm"), small(GetParam(), 64));
         EXPECT_NEAR(mean_of(image), 1, 0.001) << name;
-        EXPECT_LT(worst_deviation(image, 1), 0.5) << name;  // paths caught along the glass sphere's rim meet Russian roulette
+        EXPECT_LT(worst_deviation(image, 1), 0.5)
+            << name;  // paths caught along the glass sphere's rim meet Russian roulette
     }
 }
 
 TEST_P(EveryMethod, RoughBodiesLoseWhatSingleScatteringLoses) {  // scenes/README.md: .987 and about .97
-    for (const auto& [name, expected] : {std::pair{"furnace-metal.glb", 0.987}, {"furnace-rough-glass.glb", 0.97}}) {
+    for (const auto& [name, expected] :
+         {std::pair{"furnace-metal.glb", 0.987}, {"furnace-rough-glass.glb", 0.97}}) {
         const Image image = render(project_scene(name, "white.pfm"), small(GetParam(), 64));
         EXPECT_NEAR(mean_of(image), expected, 0.005) << name;
     }

@@ -25,7 +25,8 @@ std::vector<double> block_means(const Image& image, int side) {
     for (int y = 0; y < rows * side; ++y)
         for (int x = 0; x < columns * side; ++x) {
             const auto [r, g, b] = image.rgb(x, y);
-            means[static_cast<std::size_t>(y / side * columns + x / side)] += (double{r} + g + b) / (3 * side * side);
+            means[static_cast<std::size_t>(y / side * columns + x / side)] +=
+                (double{r} + g + b) / (3 * side * side);
         }
     return means;
 }

@@ -22,8 +22,9 @@ std::vector<double> block_means(const Image& image, int side);
 /// For each block: mean and standard error over renders with seeds 1 … `seeds`.
 std::vector<Estimate> block_estimates(const Scene& scene, RenderSettings settings, int seeds, int side);
 
-/// The least two-sided p-value among pairs of estimates of the same blocks, corrected for their number (Šidák): under the null
-/// hypothesis it is below α with probability α. `scale` multiplies the second (to plant a bias).
+/// The least two-sided p-value among pairs of estimates of the same blocks, corrected for their number
+/// (Šidák): under the null hypothesis it is below α with probability α. `scale` multiplies the second (to
+/// plant a bias).
 double agreement_p(const std::vector<Estimate>& a, const std::vector<Estimate>& b, double scale = 1);
 
 }  // namespace relumine::testing

@@ -27,8 +27,10 @@ Transform placement(double scale, Vec3 offset) {
 Scene placed(const std::string& name, const Transform& world_from_scene) {
     const std::string folder = RELUMINE_SOURCE_DIR "/scenes/";
     SceneData data = read_gltf(folder + name);
-    for (Instance& instance : data.instances) instance.world_from_object = world_from_scene * instance.world_from_object;
-    for (Camera& camera : data.cameras) camera.world_from_camera = world_from_scene * camera.world_from_camera;
+    for (Instance& instance : data.instances)
+        instance.world_from_object = world_from_scene * instance.world_from_object;
+    for (Camera& camera : data.cameras)
+        camera.world_from_camera = world_from_scene * camera.world_from_camera;
     data.environment = read_environment(folder + "validation/sky.pfm", data.warnings);
     return Scene(std::make_shared<const SceneData>(finish_scene(std::move(data))));
 }
@@ -40,7 +42,8 @@ struct Placement {
 
 class Robustness : public ::testing::TestWithParam<Placement> {};
 INSTANTIATE_TEST_SUITE_P(Placements, Robustness,
-                         ::testing::Values(Placement{1, {1000, -1000, 1000}}, Placement{1000, {}}, Placement{0.001, {}}));
+                         ::testing::Values(Placement{1, {1000, -1000, 1000}}, Placement{1000, {}},
+                                           Placement{0.001, {}}));
 
 RenderSettings small() {
     RenderSettings settings;
@@ -54,7 +57,8 @@ TEST_P(Robustness, PlacementDoesNotChangeThePicture) {
     const Transform there = placement(GetParam().scale, GetParam().offset);
     for (const char* name : {"cornell-glossy.glb", "validation/open.glb"}) {
         const auto here = block_estimates(placed(name, {}), small(), 8, 6);
-        EXPECT_GT(agreement_p(block_estimates(placed(name, there), small(), 8, 6), here), false_positive_rate) << name;
+        EXPECT_GT(agreement_p(block_estimates(placed(name, there), small(), 8, 6), here), false_positive_rate)
+            << name;
     }
 }
 

@@ -47,13 +47,17 @@ double beta_fraction(double a, double b, double x) {
 /// The regularised incomplete beta function.
 double incomplete_beta(double a, double b, double x) {
     if (x <= 0 || x >= 1) return x <= 0 ? 0 : 1;
-    const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
-    return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a : 1 - front * beta_fraction(b, a, 1 - x) / b;
+    const double front =
+        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+    return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a
+                                     : 1 - front * beta_fraction(b, a, 1 - x) / b;
 }
 
 }  // namespace
 
-double student_p(double t, double degrees) { return incomplete_beta(0.5 * degrees, 0.5, degrees / (degrees + t * t)); }
+double student_p(double t, double degrees) {
+    return incomplete_beta(0.5 * degrees, 0.5, degrees / (degrees + t * t));
+}
 
 double welch_p(const Estimate& a, const Estimate& b) {
     const double va = a.standard_error * a.standard_error, vb = b.standard_error * b.standard_error;

@@ -9,11 +9,14 @@
 
 namespace relumine::testing {
 
-/// The regularised upper incomplete gamma function Q(a, x): a series for x < a + 1, a continued fraction beyond.
+/// The regularised upper incomplete gamma function Q(a, x): a series for x < a + 1, a continued fraction
+/// beyond.
 double upper_gamma(double a, double x);
 
 /// The probability that a χ² variable of `degrees` exceeds `statistic`.
-inline double chi_square_tail(double statistic, double degrees) { return upper_gamma(0.5 * degrees, 0.5 * statistic); }
+inline double chi_square_tail(double statistic, double degrees) {
+    return upper_gamma(0.5 * degrees, 0.5 * statistic);
+}
 
 /// The p-value of observed counts against expected ones. Cells that expect fewer than 5 are pooled.
 double chi_square_p(std::span<const double> observed, std::span<const double> expected);
@@ -24,7 +27,8 @@ inline double normal_p(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)
 /// The two-sided p-value of a Student variable.
 double student_p(double t, double degrees);
 
-/// The level for each of `tests` independent tests that together reject wrongly with probability `total` (Šidák).
+/// The level for each of `tests` independent tests that together reject wrongly with probability `total`
+/// (Šidák).
 inline double sidak(double total, double tests) { return 1 - std::pow(1 - total, 1 / tests); }
 
 /// Mean and standard error of the mean of `count` values.

@@ -7,7 +7,8 @@
 
 namespace relumine {
 
-/// Base of everything that the library throws on purpose. `what()` is one line, ready to be shown to a person.
+/// Base of everything that the library throws on purpose. `what()` is one line, ready to be shown to a
+/// person.
 class Error : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

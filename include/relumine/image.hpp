@@ -43,17 +43,18 @@ struct Image {
 
 /// How `write_image` turns radiance into a file.
 struct WriteOptions {
-    float exposure = 0;       // stops, for PNG: pixels are multiplied by 2^exposure before sRGB encoding
-    bool half_floats = false;  // for EXR: 16-bit instead of 32-bit RGB layers (positions and depths stay 32-bit)
+    float exposure = 0;  // stops, for PNG: pixels are multiplied by 2^exposure before sRGB encoding
+    bool half_floats =
+        false;  // for EXR: 16-bit instead of 32-bit RGB layers (positions and depths stay 32-bit)
 };
 
-/// Reads `.exr` (all layers), `.pfm`, `.hdr` (linear as stored), `.png` or `.jpg` (sRGB decoded to linear) by content.
-/// Throws ImageError when the file is missing, damaged or too large.
+/// Reads `.exr` (all layers), `.pfm`, `.hdr` (linear as stored), `.png` or `.jpg` (sRGB decoded to linear) by
+/// content. Throws ImageError when the file is missing, damaged or too large.
 [[nodiscard]] Image read_image(const std::string& path);
 
-/// Writes by extension: `.exr` (linear, all layers, metadata), `.png` (exposed, sRGB, dithered; the picture itself
-/// alone), `.pfm` (linear; the picture itself alone). The file appears whole or not at all.
-/// Throws SettingsError for another extension, OutputError when writing fails.
+/// Writes by extension: `.exr` (linear, all layers, metadata), `.png` (exposed, sRGB, dithered; the picture
+/// itself alone), `.pfm` (linear; the picture itself alone). The file appears whole or not at all. Throws
+/// SettingsError for another extension, OutputError when writing fails.
 void write_image(const Image& image, const std::string& path, const WriteOptions& options = {});
 
 }  // namespace relumine

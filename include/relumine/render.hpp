@@ -17,22 +17,24 @@ namespace relumine {
 
 /// How the picture is computed; every field has a sensible default. `validate(settings)` states the ranges.
 struct RenderSettings {
-    std::string method = "path";     // see render_methods()
-    int samples_per_pixel = 16;      // 1 … 2²⁰ camera samples
+    std::string method = "path";            // see render_methods()
+    int samples_per_pixel = 16;             // 1 … 2²⁰ camera samples
     std::string pixel_sampling = "jitter";  // "jitter" or "center"
     std::string pixel_filter = "box";       // "box" (one pixel wide) or "blackman-harris" (3 pixels wide)
-    std::string sampler = "auto";    // "sobol", "stratified", "independent"; auto: stratified for gather, else sobol
-    int gather_rays = 4096;          // `gather`: rays per shading point, 1 … 2²⁰
-    int light_samples = 0;           // `gather`: shadow rays per shading point to the bright part of the light
-    int max_depth = -1;              // scattering vertices of a path; −1: unlimited with Russian roulette
-    std::string radiance = "auto";   // `gather`: "emission", "direct", "path"; auto: path
-    std::string masking = "correlated";  // Smith masking-shadowing of microfacets: "correlated" or "separable"
-    std::string camera;              // name or index; "": the first, or a framing one where there is none
-    int width = 0, height = 0;       // pixels; 0: 1024 wide by the camera's aspect
-    std::optional<PixelRect> crop;   // of the full frame; empty: all of it
-    int threads = 0;                 // 0: all; never changes the picture
+    std::string sampler =
+        "auto";              // "sobol", "stratified", "independent"; auto: stratified for gather, else sobol
+    int gather_rays = 4096;  // `gather`: rays per shading point, 1 … 2²⁰
+    int light_samples = 0;   // `gather`: shadow rays per shading point to the bright part of the light
+    int max_depth = -1;      // scattering vertices of a path; −1: unlimited with Russian roulette
+    std::string radiance = "auto";  // `gather`: "emission", "direct", "path"; auto: path
+    std::string masking =
+        "correlated";               // Smith masking-shadowing of microfacets: "correlated" or "separable"
+    std::string camera;             // name or index; "": the first, or a framing one where there is none
+    int width = 0, height = 0;      // pixels; 0: 1024 wide by the camera's aspect
+    std::optional<PixelRect> crop;  // of the full frame; empty: all of it
+    int threads = 0;                // 0: all; never changes the picture
     std::uint64_t seed = 0;
-    std::vector<std::string> aovs;   // further layers, see aov_names()
+    std::vector<std::string> aovs;  // further layers, see aov_names()
 };
 
 /// Names for RenderSettings::method and ::aovs.
@@ -46,15 +48,15 @@ void validate(const RenderSettings& settings);
 struct RenderStats {
     std::vector<std::pair<std::string, double>> stage_seconds;  // in order: "build", "lights", "render", …
     double total_seconds = 0;
-    double cpu_seconds = 0;                        // user + system, all threads
-    std::map<std::string, std::uint64_t> rays;     // by purpose: "camera", "shadow", "bounce", "gather", …
+    double cpu_seconds = 0;                     // user + system, all threads
+    std::map<std::string, std::uint64_t> rays;  // by purpose: "camera", "shadow", "bounce", "gather", …
     std::uint64_t total_rays = 0;
-    std::uint64_t samples = 0;                     // camera samples
-    std::uint64_t non_finite_samples = 0;          // dropped
+    std::uint64_t samples = 0;                                    // camera samples
+    std::uint64_t non_finite_samples = 0;                         // dropped
     std::optional<std::array<std::int64_t, 3>> first_non_finite;  // x, y, sample index, to replay it
-    std::uint64_t peak_memory_bytes = 0;           // resident set of the process
+    std::uint64_t peak_memory_bytes = 0;                          // resident set of the process
     int threads = 0;
-    bool stopped = false;                          // the observer asked to stop: fewer samples than wanted
+    bool stopped = false;  // the observer asked to stop: fewer samples than wanted
 
     /// A JSON object with the fields above as keys; documented in docs/statistics.md.
     [[nodiscard]] std::string to_json() const;
@@ -62,11 +64,11 @@ struct RenderStats {
 
 /// Where a render stands. `total` is in units of work of the stage; 0 while unknown.
 struct Progress {
-    std::string stage;                // "build", "render", …
+    std::string stage;  // "build", "render", …
     std::uint64_t done = 0, total = 0;
-    std::uint64_t rays = 0;           // so far
-    double seconds = 0;               // since the render began
-    double seconds_left = -1;         // estimate; negative while unknown
+    std::uint64_t rays = 0;    // so far
+    double seconds = 0;        // since the render began
+    double seconds_left = -1;  // estimate; negative while unknown
 };
 
 /// Receives progress. Calls come from worker threads but never two at a time.
@@ -75,14 +77,17 @@ class RenderObserver {
     virtual ~RenderObserver() = default;
     virtual void progress(const Progress&) {}
     virtual void tile_finished(const PixelRect&) {}
-    /// Asked often. After `true` the render ends soon with the samples so far, each pixel with the same number.
+    /// Asked often. After `true` the render ends soon with the samples so far, each pixel with the same
+    /// number.
     virtual bool stop_requested() { return false; }
     virtual void finished(const RenderStats&) {}
 };
 
 /// Renders the scene. The image is a function of scene, settings and seed alone, to the bit.
-/// Throws SettingsError for bad settings (also a camera that does not exist), Error where memory does not suffice.
-[[nodiscard]] Image render(const Scene& scene, const RenderSettings& settings = {}, RenderObserver* observer = nullptr);
+/// Throws SettingsError for bad settings (also a camera that does not exist), Error where memory does not
+/// suffice.
+[[nodiscard]] Image render(const Scene& scene, const RenderSettings& settings = {},
+                           RenderObserver* observer = nullptr);
 
 /// The library's version, "MAJOR.MINOR.PATCH".
 [[nodiscard]] const char* version();

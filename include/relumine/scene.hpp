@@ -18,9 +18,9 @@ struct SceneData;
 
 /// What `load_scene` may add to or replace in a file's scene.
 struct SceneOptions {
-    std::string environment;                  // lat-long `.exr`, `.hdr` or `.pfm` that replaces the scene's own; "" keeps it
-    float environment_scale = 1;              // multiplies the environment's radiance, ≥ 0
-    float environment_rotation_degrees = 0;   // counter-clockwise seen from +Y
+    std::string environment;  // lat-long `.exr`, `.hdr` or `.pfm` that replaces the scene's own; "" keeps it
+    float environment_scale = 1;             // multiplies the environment's radiance, ≥ 0
+    float environment_rotation_degrees = 0;  // counter-clockwise seen from +Y
 };
 
 /// What a scene holds, for people and for tests.
@@ -31,10 +31,10 @@ struct SceneInfo {
     std::size_t materials = 0, textures = 0;
     std::size_t emissive_triangles = 0, point_lights = 0, spot_lights = 0, directional_lights = 0;
     bool has_environment = false;
-    std::vector<std::string> cameras;               // names, in file order; index = position
+    std::vector<std::string> cameras;                 // names, in file order; index = position
     std::array<float, 3> bounds_min{}, bounds_max{};  // world space, metres
-    std::size_t memory_bytes = 0;                   // geometry and textures
-    std::vector<std::string> warnings;              // each once: what is supported only in part, and where
+    std::size_t memory_bytes = 0;                     // geometry and textures
+    std::vector<std::string> warnings;                // each once: what is supported only in part, and where
 };
 
 /// An immutable scene. Copies are cheap: they share the data.
@@ -43,10 +43,13 @@ class Scene {
     explicit Scene(std::shared_ptr<const SceneData> data) : data_(std::move(data)) {}
 
     [[nodiscard]] SceneInfo info() const;
-    [[nodiscard]] const SceneData& data() const { return *data_; }  // internal representation, not part of the API
+    [[nodiscard]] const SceneData& data() const {
+        return *data_;
+    }  // internal representation, not part of the API
 
   private:
-    std::shared_ptr<const SceneData> data_;  // shared: scenes are values, their data is large and never changes
+    std::shared_ptr<const SceneData>
+        data_;  // shared: scenes are values, their data is large and never changes
 };
 
 /// Loads `.gltf`/`.glb`; `.ply`/`.ply.gz`/`.obj` open as a model on a neutral ground under a built-in sky.
@@ -62,13 +65,13 @@ struct MaterialDescription {
     std::string name;
     std::array<float, 3> base_color{1, 1, 1};
     float metallic = 0;
-    float roughness = 1;               // perceptual: GGX α = roughness²
-    std::array<float, 3> emission{};   // radiance, W·sr⁻¹·m⁻², ≥ 0
-    bool double_sided = false;         // whether the back emits too; both sides always reflect
-    float ior = 1.5f;                  // ≥ 1
-    float specular = 1;                // KHR_materials_specular
-    float transmission = 0;            // KHR_materials_transmission
-    bool solid = false;                // a closed body that refracts, instead of a thin sheet
+    float roughness = 1;              // perceptual: GGX α = roughness²
+    std::array<float, 3> emission{};  // radiance, W·sr⁻¹·m⁻², ≥ 0
+    bool double_sided = false;        // whether the back emits too; both sides always reflect
+    float ior = 1.5f;                 // ≥ 1
+    float specular = 1;               // KHR_materials_specular
+    float transmission = 0;           // KHR_materials_transmission
+    bool solid = false;               // a closed body that refracts, instead of a thin sheet
 };
 
 /// Triangles as spans of the caller's memory, copied by `SceneBuilder::add_mesh`.
@@ -78,7 +81,7 @@ struct MeshDescription {
     std::span<const std::array<float, 3>> normals;    // unit, per position; empty: flat shading
     std::span<const std::array<float, 2>> uvs;        // per position; may be empty
     std::span<const std::array<std::uint32_t, 3>> triangles;
-    std::size_t material = 0;                         // index returned by add_material
+    std::size_t material = 0;  // index returned by add_material
 };
 
 struct PointLightDescription {

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-#define RELUMINE_ASSERT(condition)                                                                    \
-    do {                                                                                              \
-        if (!(condition)) {                                                                           \
-            std::fprintf(stderr, "%s:%d: broken invariant: %s\n", __FILE__, __LINE__, #condition);    \
-            std::abort();                                                                             \
-        }                                                                                             \
+#define RELUMINE_ASSERT(condition)                                                                 \
+    do {                                                                                           \
+        if (!(condition)) {                                                                        \
+            std::fprintf(stderr, "%s:%d: broken invariant: %s\n", __FILE__, __LINE__, #condition); \
+            std::abort();                                                                          \
+        }                                                                                          \
     } while (false)

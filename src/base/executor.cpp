@@ -66,7 +66,8 @@ void parallel_for(int threads, std::size_t count, const std::function<void(std::
             error.keep(index, std::current_exception());
         }
     };
-    const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const tbb::global_control enough(tbb::global_control::max_allowed_parallelism,
+                                     static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
     arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, guarded, tbb::simple_partitioner{}); });
     error.rethrow();

@@ -47,7 +47,8 @@ std::size_t checked_size(const Descriptor& file, const std::string& path, std::s
     if (!S_ISREG(status.st_mode)) fail_reading(path, "something that is not a regular file");
     const auto size = static_cast<std::size_t>(status.st_size);
     if (size > limit)
-        throw FileError{expected_found(path, fmt::format("at most {} bytes", limit), fmt::format("{}", size))};
+        throw FileError{
+            expected_found(path, fmt::format("at most {} bytes", limit), fmt::format("{}", size))};
     return size;
 }
 
@@ -100,12 +101,14 @@ class Inflater {
     void grow(std::vector<std::uint8_t>& out, std::size_t limit) {
         const std::size_t had = out.size();
         if (had >= limit) fail(fmt::format("at most {} bytes when unpacked", limit));
-        out.resize(std::min({had + std::max(had, std::size_t{1} << 16), had + (std::size_t{1} << 30), limit}));
+        out.resize(
+            std::min({had + std::max(had, std::size_t{1} << 16), had + (std::size_t{1} << 30), limit}));
         stream_.next_out = out.data() + had;
         stream_.avail_out = static_cast<uInt>(out.size() - had);
     }
     [[noreturn]] void fail(const std::string& expected) const {
-        throw FileError{expected_found(path_, expected, stream_.msg ? stream_.msg : "an early end or too much data")};
+        throw FileError{
+            expected_found(path_, expected, stream_.msg ? stream_.msg : "an early end or too much data")};
     }
 
     z_stream stream_{};
@@ -145,7 +148,8 @@ void write_file_atomically(const std::string& path, std::span<const std::uint8_t
     if (file.get() < 0) throw OutputError{fmt::format("{}: cannot create: {}", path, std::strerror(errno))};
     try {
         write_all(file, bytes, path);
-        if (::fsync(file.get()) != 0 || file.close() != 0 || std::rename(unfinished.c_str(), path.c_str()) != 0)
+        if (::fsync(file.get()) != 0 || file.close() != 0
+            || std::rename(unfinished.c_str(), path.c_str()) != 0)
             throw OutputError{fmt::format("{}: cannot finish: {}", path, std::strerror(errno))};
     } catch (...) {
         ::unlink(unfinished.c_str());

@@ -6,7 +6,8 @@
 
 namespace relumine {
 
-/// A bijection of 64 bits that flips every output bit with probability ½ for each flipped input bit [Stafford11].
+/// A bijection of 64 bits that flips every output bit with probability ½ for each flipped input bit
+/// [Stafford11].
 constexpr std::uint64_t mix(std::uint64_t x) {
     x ^= x >> 31;
     x *= 0x7fb5d329728ea185u;
@@ -16,7 +17,9 @@ constexpr std::uint64_t mix(std::uint64_t x) {
     return x;
 }
 
-constexpr std::uint64_t hash(std::uint64_t a, std::uint64_t b) { return mix(a ^ mix(b + 0x9e3779b97f4a7c15u)); }
+constexpr std::uint64_t hash(std::uint64_t a, std::uint64_t b) {
+    return mix(a ^ mix(b + 0x9e3779b97f4a7c15u));
+}
 template <typename... Rest>
 constexpr std::uint64_t hash(std::uint64_t a, std::uint64_t b, Rest... rest) {
     return hash(hash(a, b), static_cast<std::uint64_t>(rest)...);

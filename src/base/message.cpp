@@ -36,7 +36,8 @@ std::string expected_found(std::string_view where, std::string_view expected, st
 std::string did_you_mean(std::string_view name, std::span<const std::string> candidates) {
     const auto distance = [&](const std::string& candidate) { return edit_distance(name, candidate); };
     const auto nearest = std::ranges::min_element(candidates, {}, distance);
-    if (nearest == candidates.end() || distance(*nearest) > std::max<std::size_t>(1, name.size() / 3)) return "";
+    if (nearest == candidates.end() || distance(*nearest) > std::max<std::size_t>(1, name.size() / 3))
+        return "";
     return fmt::format(" (did you mean \"{}\"?)", *nearest);
 }
 

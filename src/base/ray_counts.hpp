@@ -9,12 +9,15 @@
 namespace relumine {
 
 enum class RayPurpose : std::uint8_t { camera, prefix, gather, bounce, shadow };
-inline constexpr std::array<const char*, 5> ray_purpose_names{"camera", "prefix", "gather", "bounce", "shadow"};
+inline constexpr std::array<const char*, 5> ray_purpose_names{"camera", "prefix", "gather", "bounce",
+                                                              "shadow"};
 
 struct RayCounts {
     std::array<std::uint64_t, ray_purpose_names.size()> by_purpose{};
 
-    void add(RayPurpose purpose, std::uint64_t rays = 1) { by_purpose[static_cast<std::size_t>(purpose)] += rays; }
+    void add(RayPurpose purpose, std::uint64_t rays = 1) {
+        by_purpose[static_cast<std::size_t>(purpose)] += rays;
+    }
     void add(const RayCounts& other) {
         for (std::size_t i = 0; i < by_purpose.size(); ++i) by_purpose[i] += other.by_purpose[i];
     }

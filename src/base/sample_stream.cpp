@@ -10,14 +10,15 @@ namespace {
 constexpr std::uint32_t low(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
 constexpr std::uint32_t high(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); }
 
-/// The index in a random order of its own for every pair of dimensions, so that pairs do not correlate. Returned bit-reversed
-/// twice, that is in natural order: any aligned power-of-two run of indices stays one.
+/// The index in a random order of its own for every pair of dimensions, so that pairs do not correlate.
+/// Returned bit-reversed twice, that is in natural order: any aligned power-of-two run of indices stays one.
 std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) { return owen_scramble(index, seed); }
 
 Point2 sobol2(std::uint32_t index, std::uint64_t key) {
     const std::uint32_t i = shuffled(index, low(key));
     const std::uint32_t x = reverse_bits(laine_karras(i, high(key)));
-    const std::uint32_t y = reverse_bits(laine_karras(sobol_second_reversed(i), high(key * 0xd1342543de82ef95u)));
+    const std::uint32_t y =
+        reverse_bits(laine_karras(sobol_second_reversed(i), high(key * 0xd1342543de82ef95u)));
     return {unit_float(x), unit_float(y)};
 }
 
@@ -56,7 +57,8 @@ std::uint32_t permute(std::uint32_t i, std::uint32_t length, std::uint32_t patte
     return (i + pattern) % length;
 }
 
-/// Strata (ix, iy) of a grid of columns × rows cells, jittered so that each axis alone is stratified count-fold too.
+/// Strata (ix, iy) of a grid of columns × rows cells, jittered so that each axis alone is stratified
+/// count-fold too.
 Point2 correlated_multi_jitter(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
     const auto columns = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)));
     const std::uint32_t rows = (count + columns - 1) / columns;

@@ -10,11 +10,21 @@
 namespace relumine {
 
 /// What a draw decides. Adding one does not shift the others.
-enum class Dim : std::uint32_t { pixel, light_choice, light_point, lobe, direction, roulette, opacity, blend };
+enum class Dim : std::uint32_t {
+    pixel,
+    light_choice,
+    light_point,
+    lobe,
+    direction,
+    roulette,
+    opacity,
+    blend
+};
 
 enum class PointSet : std::uint8_t {
     sobol,        // Owen-scrambled Sobol, each pair of dimensions a (0,2)-sequence of its own [Burley20]
-    stratified,   // jittered, correlated multi-jittered in 2-D [Kensler13]: needs the number of samples in advance
+    stratified,   // jittered, correlated multi-jittered in 2-D [Kensler13]: needs the number of samples in
+                  // advance
     independent,  // no stratification
 };
 
@@ -42,8 +52,10 @@ struct SampleStream {
 };
 
 /// The stream of a camera sample; `x`, `y` are pixels of the full frame.
-inline SampleStream pixel_stream(std::uint64_t seed, int x, int y, std::uint32_t sample, std::uint32_t count, PointSet set) {
-    const std::uint64_t pixel = static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 | static_cast<std::uint32_t>(x);
+inline SampleStream pixel_stream(std::uint64_t seed, int x, int y, std::uint32_t sample, std::uint32_t count,
+                                 PointSet set) {
+    const std::uint64_t pixel =
+        static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 | static_cast<std::uint32_t>(x);
     return {hash(seed, pixel), sample, count, set};
 }
 

@@ -21,20 +21,24 @@ std::vector<Point2> points(PointSet set, std::uint32_t count, std::uint64_t key,
 /// Whether every cell of the columns × rows grid holds exactly one of columns·rows points.
 bool one_in_each_cell(const std::vector<Point2>& all, int columns, int rows) {
     std::set<std::pair<int, int>> cells;
-    for (const Point2 p : all) cells.emplace(static_cast<int>(p.x * static_cast<float>(columns)), static_cast<int>(p.y * static_cast<float>(rows)));
+    for (const Point2 p : all)
+        cells.emplace(static_cast<int>(p.x * static_cast<float>(columns)),
+                      static_cast<int>(p.y * static_cast<float>(rows)));
     return cells.size() == all.size();
 }
 
 TEST(Sobol, EveryElementaryIntervalOf256PointsHoldsOne) {
     for (std::uint64_t key = 0; key < 8; ++key) {
         const auto all = points(PointSet::sobol, 256, key);
-        for (int columns = 1; columns <= 256; columns *= 2) EXPECT_TRUE(one_in_each_cell(all, columns, 256 / columns)) << columns;
+        for (int columns = 1; columns <= 256; columns *= 2)
+            EXPECT_TRUE(one_in_each_cell(all, columns, 256 / columns)) << columns;
     }
 }
 
 TEST(Sobol, LaterRunsAreStratifiedToo) {
     std::vector<Point2> all;
-    for (std::uint32_t i = 64; i < 128; ++i) all.push_back(SampleStream{3, i, 1, PointSet::sobol}.next2(Dim::pixel));
+    for (std::uint32_t i = 64; i < 128; ++i)
+        all.push_back(SampleStream{3, i, 1, PointSet::sobol}.next2(Dim::pixel));
     EXPECT_TRUE(one_in_each_cell(all, 8, 8));
 }
 
@@ -66,7 +70,8 @@ double uniformity_p(PointSet set, std::uint32_t index) {
     std::vector<double> observed(side * side), expected(side * side, double{draws} / (side * side));
     for (std::uint64_t key = 0; key < draws; ++key) {
         const Point2 p = SampleStream{mix(key), index, 16, set}.next2(Dim::light_point, 2);
-        ++observed[static_cast<std::size_t>(static_cast<int>(p.y * side) * side + static_cast<int>(p.x * side))];
+        ++observed[static_cast<std::size_t>(static_cast<int>(p.y * side) * side
+                                            + static_cast<int>(p.x * side))];
     }
     return testing::chi_square_p(observed, expected);
 }
@@ -93,7 +98,8 @@ double mean_correlation(PointSet set, Dim a, Dim b) {
 TEST(SampleStream, DimensionsDoNotCorrelate) {  // 5 σ of 32,000 independent products is .028
     for (const PointSet set : {PointSet::sobol, PointSet::stratified, PointSet::independent}) {
         EXPECT_LT(std::abs(mean_correlation(set, Dim::direction, Dim::light_point)), 0.028);
-        EXPECT_GT(mean_correlation(set, Dim::direction, Dim::direction), 0.9);  // the same dimension must be caught
+        EXPECT_GT(mean_correlation(set, Dim::direction, Dim::direction),
+                  0.9);  // the same dimension must be caught
     }
 }
 

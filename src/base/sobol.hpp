@@ -28,8 +28,8 @@ constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
     return reverse_bits(laine_karras(reverse_bits(x), seed));
 }
 
-/// The second Sobol dimension of `index`, bit-reversed. Its generator matrix is Pascal's triangle mod 2, that is the
-/// substitution x → x + 1 in the polynomial over GF(2) with these bits, which takes five steps.
+/// The second Sobol dimension of `index`, bit-reversed. Its generator matrix is Pascal's triangle mod 2, that
+/// is the substitution x → x + 1 in the polynomial over GF(2) with these bits, which takes five steps.
 constexpr std::uint32_t sobol_second_reversed(std::uint32_t index) {
     index ^= (index & 0xffff0000u) >> 16;
     index ^= (index & 0xff00ff00u) >> 8;

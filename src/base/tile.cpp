@@ -10,7 +10,8 @@ Tile make_tile(const PixelRect& rect, std::uint32_t first_sample, std::uint32_t 
     return tile;
 }
 
-void Tile::add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance, const FirstSurface& surface) {
+void Tile::add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance,
+               const FirstSurface& surface) {
     const Spectrum total = radiance.total();
     if (!is_finite(total)) {
         if (!first_non_finite) first_non_finite = NonFiniteSample{x, y, sample};

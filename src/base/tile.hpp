@@ -12,7 +12,8 @@
 
 namespace relumine {
 
-/// Radiance towards the camera by the number of scattering vertices behind the specular prefix: none, one, more.
+/// Radiance towards the camera by the number of scattering vertices behind the specular prefix: none, one,
+/// more.
 struct SplitRadiance {
     Spectrum emission, direct, indirect;
 
@@ -49,10 +50,12 @@ struct Tile {
     std::uint32_t first_sample = 0, sample_count = 0;
     std::vector<PixelSums> pixels;  // row-major over rect
     RayCounts rays;
-    std::uint64_t non_finite = 0;   // samples dropped
+    std::uint64_t non_finite = 0;  // samples dropped
     std::optional<NonFiniteSample> first_non_finite;
 
-    [[nodiscard]] bool contains(int x, int y) const { return x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1; }
+    [[nodiscard]] bool contains(int x, int y) const {
+        return x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1;
+    }
 
     /// Adds a sample to its pixel, which the tile contains, or drops it where the radiance is not finite.
     void add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance, const FirstSurface& surface);

@@ -9,7 +9,8 @@
 
 namespace relumine {
 
-/// Maps points of one space to another: p' = A p + b. Read products right to left: world_from_local * local_from_…
+/// Maps points of one space to another: p' = A p + b. Read products right to left: world_from_local *
+/// local_from_…
 struct Transform {
     // rows of [A | b]
     std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
@@ -44,7 +45,8 @@ inline Transform transform_from_columns(const std::array<double, 16>& c) {
     return t;
 }
 
-/// The cofactor matrix of the linear part: maps normals (unnormalised), det(A)·A⁻ᵀ; exists for singular A too.
+/// The cofactor matrix of the linear part: maps normals (unnormalised), det(A)·A⁻ᵀ; exists for singular A
+/// too.
 inline Transform cofactor(const Transform& t) {
     const auto& m = t.m;
     const auto minor = [&](size_t i, size_t j) {
@@ -60,7 +62,8 @@ inline Transform cofactor(const Transform& t) {
 /// Volume scale; negative where handedness flips, 0 where the transform is singular.
 inline double determinant(const Transform& t) {
     const auto& m = t.m;
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+           - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 

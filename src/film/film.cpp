@@ -12,7 +12,12 @@
 namespace relumine {
 namespace {
 
-enum class Develop { mean, first /* value of sample 0 */, variance /* from sums and sums of squares */, samples };
+enum class Develop {
+    mean,
+    first /* value of sample 0 */,
+    variance /* from sums and sums of squares */,
+    samples
+};
 
 void put(std::span<float> out, Spectrum s) {
     out[0] = s.r;
@@ -29,7 +34,8 @@ void put(std::span<float> out, Vec3 v) {
 float variance_of_mean(float sum, float sum_of_squares, float n) {
     if (n < 2) return 0;
     const double mean = static_cast<double>(sum) / n;
-    return static_cast<float>(std::max(0.0, static_cast<double>(sum_of_squares) / n - mean * mean) / (static_cast<double>(n) - 1));
+    return static_cast<float>(std::max(0.0, static_cast<double>(sum_of_squares) / n - mean * mean)
+                              / (static_cast<double>(n) - 1));
 }
 
 }  // namespace
@@ -43,7 +49,9 @@ struct Film::LayerSpec {
     bool surface = false;  // needs FirstSurface
 
     /// Floats kept per pixel: a variance is made of the sum and the sum of squares.
-    [[nodiscard]] std::size_t stored() const { return develop == Develop::variance ? 2 * channels.size() : channels.size(); }
+    [[nodiscard]] std::size_t stored() const {
+        return develop == Develop::variance ? 2 * channels.size() : channels.size();
+    }
 };
 
 const std::vector<Film::LayerSpec>& Film::known_layers() {
@@ -71,26 +79,31 @@ const std::vector<Film::LayerSpec>& Film::known_layers() {
 }
 
 std::vector<std::string> film_layer_names() {
-    return {"albedo", "normal", "position", "depth", "material_id", "emission", "direct", "indirect", "samples", "variance"};
+    return {"albedo",   "normal", "position", "depth",   "material_id",
+            "emission", "direct", "indirect", "samples", "variance"};
 }
 
 bool needs_surfaces(const std::vector<std::string>& layers) {
     const std::array surface_layers{"albedo", "normal", "position", "depth", "material_id"};
-    return std::ranges::any_of(layers, [&](const std::string& name) { return std::ranges::find(surface_layers, name) != surface_layers.end(); });
+    return std::ranges::any_of(layers, [&](const std::string& name) {
+        return std::ranges::find(surface_layers, name) != surface_layers.end();
+    });
 }
 
 Film::Film(int frame_width, int frame_height, const PixelRect& window, const std::vector<std::string>& layers)
     : frame_width_(frame_width), frame_height_(frame_height), window_(window) {
     const auto add_layer = [&](const std::string& name) {
         const auto& known = known_layers();
-        const auto found = std::ranges::find_if(known, [&](const LayerSpec& spec) { return spec.name == name; });
+        const auto found =
+            std::ranges::find_if(known, [&](const LayerSpec& spec) { return spec.name == name; });
         RELUMINE_ASSERT(found != known.end());
         layers_.push_back(&*found);
         channels_ += found->stored();
     };
     add_layer("");
     for (const std::string& name : layers) add_layer(name);
-    const std::size_t pixels = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+    const std::size_t pixels =
+        static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     finished_.resize(pixels * channels_);
     pending_.resize(pixels * channels_);
     finished_samples_.resize(pixels);
@@ -98,7 +111,8 @@ Film::Film(int frame_width, int frame_height, const PixelRect& window, const std
 }
 
 std::size_t Film::offset(int x, int y) const {
-    return static_cast<std::size_t>(y - window_.y0) * static_cast<std::size_t>(window_.width()) + static_cast<std::size_t>(x - window_.x0);
+    return static_cast<std::size_t>(y - window_.y0) * static_cast<std::size_t>(window_.width())
+           + static_cast<std::size_t>(x - window_.x0);
 }
 
 void Film::add(const Tile& tile) {
@@ -140,7 +154,8 @@ Image Film::develop() const {
                 float& out = layer.pixels[pixel * channels + c];
                 if (spec->develop == Develop::mean) out = n > 0 ? sums[c] / n : 0;
                 if (spec->develop == Develop::first || spec->develop == Develop::samples) out = sums[c];
-                if (spec->develop == Develop::variance) out = variance_of_mean(sums[c], sums[c + channels], n);
+                if (spec->develop == Develop::variance)
+                    out = variance_of_mean(sums[c], sums[c + channels], n);
             }
         }
         image.layers.push_back(std::move(layer));

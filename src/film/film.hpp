@@ -16,8 +16,9 @@ namespace relumine {
 /// Whether any of these layers needs FirstSurface.
 [[nodiscard]] bool needs_surfaces(const std::vector<std::string>& layers);
 
-/// The sums of the finished passes and of the one under way. Tiles of a pass may come in any order and from any thread as long as
-/// they do not overlap; a pixel's sums are added in the order of the passes, so the result does not depend on threads.
+/// The sums of the finished passes and of the one under way. Tiles of a pass may come in any order and from
+/// any thread as long as they do not overlap; a pixel's sums are added in the order of the passes, so the
+/// result does not depend on threads.
 class Film {
   public:
     /// `layers` are among film_layer_names().

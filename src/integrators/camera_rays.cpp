@@ -5,11 +5,15 @@
 namespace relumine {
 
 CameraRays::CameraRays(const Camera& camera, int width, int height)
-    : orthographic_(camera.orthographic), width_(static_cast<float>(width)), height_(static_cast<float>(height)) {
+    : orthographic_(camera.orthographic),
+      width_(static_cast<float>(width)),
+      height_(static_cast<float>(height)) {
     const Transform& m = camera.world_from_camera;
-    // The matrix may carry a scale, as a whole scene's does when it is resized: it moves the camera but bends no ray.
-    const float half_height = static_cast<float>(
-        orthographic_ ? 0.5 * camera.vertical_extent * length(m.vector({0, 1, 0})) : std::tan(0.5 * camera.vertical_extent));
+    // The matrix may carry a scale, as a whole scene's does when it is resized: it moves the camera but bends
+    // no ray.
+    const float half_height =
+        static_cast<float>(orthographic_ ? 0.5 * camera.vertical_extent * length(m.vector({0, 1, 0}))
+                                         : std::tan(0.5 * camera.vertical_extent));
     origin_ = m.point({});
     right_ = normalize(m.vector({1, 0, 0})) * (half_height * width_ / height_);
     up_ = normalize(m.vector({0, 1, 0})) * half_height;

@@ -8,7 +8,8 @@
 
 namespace relumine {
 
-/// A camera made ready for a picture of a given size: the vertical extent is kept, the aspect is the picture's.
+/// A camera made ready for a picture of a given size: the vertical extent is kept, the aspect is the
+/// picture's.
 class CameraRays {
   public:
     CameraRays(const Camera& camera, int width, int height);

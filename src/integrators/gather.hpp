@@ -9,7 +9,8 @@
 
 namespace relumine {
 
-[[nodiscard]] std::unique_ptr<Integrator> make_gather(const RenderSettings& settings, const Transport& transport, const View& view,
+[[nodiscard]] std::unique_ptr<Integrator> make_gather(const RenderSettings& settings,
+                                                      const Transport& transport, const View& view,
                                                       bool surface_layers);
 
 }  // namespace relumine

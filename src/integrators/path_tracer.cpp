@@ -22,7 +22,8 @@ class PathTracer final : public Integrator {
             for (std::size_t i = 0; i < packet_size; ++i) {
                 const CameraSample& s = samples[i];
                 if (!tile.contains(s.x, s.y)) continue;
-                tile.add(s.x, s.y, s.stream.index, radiance[i], surface_layers_ ? first_surface(transport_, s) : FirstSurface{});
+                tile.add(s.x, s.y, s.stream.index, radiance[i],
+                         surface_layers_ ? first_surface(transport_, s) : FirstSurface{});
             }
         });
     }
@@ -36,8 +37,8 @@ class PathTracer final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_path_tracer(const RenderSettings& settings, const Transport& transport, const View& view,
-                                             bool surface_layers) {
+std::unique_ptr<Integrator> make_path_tracer(const RenderSettings& settings, const Transport& transport,
+                                             const View& view, bool surface_layers) {
     return std::make_unique<PathTracer>(transport, view, depth_limit(settings), surface_layers);
 }
 

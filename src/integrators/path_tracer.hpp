@@ -10,8 +10,9 @@
 namespace relumine {
 
 /// `surface_layers`: whether the film wants albedo, normal, position, depth or material.
-[[nodiscard]] std::unique_ptr<Integrator> make_path_tracer(const RenderSettings& settings, const Transport& transport,
-                                                           const View& view, bool surface_layers);
+[[nodiscard]] std::unique_ptr<Integrator> make_path_tracer(const RenderSettings& settings,
+                                                           const Transport& transport, const View& view,
+                                                           bool surface_layers);
 
 /// The path length that settings ask for.
 [[nodiscard]] std::uint32_t depth_limit(const RenderSettings& settings);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in and around a pixel its samples lie: filters by importance sampling, so that pixels stay independent of each other.
+// Where in and around a pixel its samples lie: filters by importance sampling, so that pixels stay
+// independent of each other.
 #pragma once
 
 #include <array>
@@ -8,7 +9,11 @@
 
 namespace relumine {
 
-enum class PixelFilterKind { center /* no filter: the pixel's centre */, box /* the pixel's area */, blackman_harris /* 3 pixels wide */ };
+enum class PixelFilterKind {
+    center /* no filter: the pixel's centre */,
+    box /* the pixel's area */,
+    blackman_harris /* 3 pixels wide */
+};
 
 /// Draws positions with a density proportional to the filter; every sample then weighs the same [Ernst06].
 class PixelFilter {

@@ -9,7 +9,8 @@
 namespace relumine {
 namespace {
 
-using Maker = std::unique_ptr<Integrator> (*)(const RenderSettings&, const Transport&, const View&, bool surface_layers);
+using Maker = std::unique_ptr<Integrator> (*)(const RenderSettings&, const Transport&, const View&,
+                                              bool surface_layers);
 
 struct Method {
     const char* name;
@@ -29,8 +30,8 @@ std::vector<std::string> integrator_names() {
     return names;
 }
 
-std::unique_ptr<Integrator> make_integrator(const RenderSettings& settings, const Transport& transport, const View& view,
-                                            bool surface_layers) {
+std::unique_ptr<Integrator> make_integrator(const RenderSettings& settings, const Transport& transport,
+                                            const View& view, bool surface_layers) {
     const auto named = [&](const Method& method) { return settings.method == method.name; };
     const auto* method = std::ranges::find_if(methods, named);
     RELUMINE_ASSERT(method != methods.end());

@@ -13,8 +13,10 @@ namespace relumine {
 
 [[nodiscard]] std::vector<std::string> integrator_names();
 
-/// The method `settings.method`, which must be one of the names; settings are valid. References outlive the integrator.
-[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const RenderSettings& settings, const Transport& transport,
-                                                          const View& view, bool surface_layers);
+/// The method `settings.method`, which must be one of the names; settings are valid. References outlive the
+/// integrator.
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const RenderSettings& settings,
+                                                          const Transport& transport, const View& view,
+                                                          bool surface_layers);
 
 }  // namespace relumine

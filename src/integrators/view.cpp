@@ -12,7 +12,8 @@ constexpr int block = 4;  // pixels along each side; block² = packet_size
 CameraSample camera_sample(const View& view, int x, int y, std::uint32_t sample) {
     CameraSample s{x, y, pixel_stream(view.seed, x, y, sample, view.samples_per_pixel, view.point_set), {}};
     const Point2 in_pixel = view.filter.position(s.stream.next2(Dim::pixel));
-    s.path.ray = view.camera.through({static_cast<float>(x) + in_pixel.x, static_cast<float>(y) + in_pixel.y});
+    s.path.ray =
+        view.camera.through({static_cast<float>(x) + in_pixel.x, static_cast<float>(y) + in_pixel.y});
     s.path.ray.opacity_seed = s.stream.bits(Dim::opacity, 0);
     return s;
 }
@@ -33,7 +34,8 @@ CameraPacket trace_block(const View& view, const Tracer& tracer, int x0, int y0,
 
 }  // namespace
 
-void for_each_camera_packet(const View& view, const Tracer& tracer, Tile& tile, const std::function<void(const CameraPacket&)>& use) {
+void for_each_camera_packet(const View& view, const Tracer& tracer, Tile& tile,
+                            const std::function<void(const CameraPacket&)>& use) {
     const PixelRect& r = tile.rect;
     for (int y0 = r.y0 / block * block; y0 < r.y1; y0 += block)
         for (int x0 = r.x0 / block * block; x0 < r.x1; x0 += block)

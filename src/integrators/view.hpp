@@ -30,10 +30,11 @@ struct CameraSample {
 
 using CameraPacket = std::array<CameraSample, packet_size>;
 
-/// Calls `use` for every packet of samples that has a pixel in the tile: 4 × 4 pixels at multiples of 4 of the full frame. A
-/// packet is always whole, so that a crop sees the same bits as the full picture,
-/// and may hold pixels that the tile does not contain.
-void for_each_camera_packet(const View& view, const Tracer& tracer, Tile& tile, const std::function<void(const CameraPacket&)>& use);
+/// Calls `use` for every packet of samples that has a pixel in the tile: 4 × 4 pixels at multiples of 4 of
+/// the full frame. A packet is always whole, so that a crop sees the same bits as the full picture, and may
+/// hold pixels that the tile does not contain.
+void for_each_camera_packet(const View& view, const Tracer& tracer, Tile& tile,
+                            const std::function<void(const CameraPacket&)>& use);
 
 /// What the layers about surfaces show of a camera sample.
 [[nodiscard]] FirstSurface first_surface(const Transport& t, const CameraSample& sample);

@@ -16,7 +16,8 @@ Ray shadow_ray(const SurfacePoint& point, const LightSample& light, std::uint32_
     return ray;
 }
 
-bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light, std::uint32_t opacity_seed, RayCounts& rays) {
+bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light,
+               std::uint32_t opacity_seed, RayCounts& rays) {
     rays.add(RayPurpose::shadow);
     return t.tracer.occluded(shadow_ray(point, light, opacity_seed));
 }
@@ -26,16 +27,18 @@ Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
     return eval(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light.w_in)) * light.radiance;
 }
 
-std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex, const SampleStream& stream,
-                                                  std::uint32_t depth) {
+std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex,
+                                                  const SampleStream& stream, std::uint32_t depth) {
     const auto light = t.lights.sample(vertex.point.position, stream.next1(Dim::light_choice, depth),
                                        stream.next2(Dim::light_point, depth));
     if (!light) return {};
     const Spectrum reflected = unshadowed(vertex, *light);
     if (is_black(reflected)) return {};
     const float weight = light->delta ? 1
-                                      : mis_weight(light->pdf, pdf(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light->w_in)));
-    return LightProposal{shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1)), reflected * (weight / light->pdf)};
+                                      : mis_weight(light->pdf, pdf(vertex.bsdf, vertex.w_out,
+                                                                   vertex.point.frame.to_local(light->w_in)));
+    return LightProposal{shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1)),
+                         reflected * (weight / light->pdf)};
 }
 
 Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed, RayCounts& rays) {

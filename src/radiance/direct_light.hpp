@@ -12,10 +12,11 @@ namespace relumine {
 [[nodiscard]] Ray shadow_ray(const SurfacePoint& point, const LightSample& light, std::uint32_t opacity_seed);
 
 /// Whether anything blocks the way from `point` to the light sample.
-[[nodiscard]] bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light, std::uint32_t opacity_seed,
-                             RayCounts& rays);
+[[nodiscard]] bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light,
+                             std::uint32_t opacity_seed, RayCounts& rays);
 
-/// The unshadowed light of a sample that the BSDF sends to the viewer: f·|cos θ|·L, or 0 where the sides disagree.
+/// The unshadowed light of a sample that the BSDF sends to the viewer: f·|cos θ|·L, or 0 where the sides
+/// disagree.
 [[nodiscard]] Spectrum unshadowed(const Vertex& vertex, const LightSample& light);
 
 /// Light that will have been reflected if nothing blocks the ray.
@@ -24,12 +25,14 @@ struct LightProposal {
     Spectrum reflected;
 };
 
-/// One sample of the direct light reflected at `vertex`, weighted against BSDF sampling by the power heuristic, before its shadow
-/// ray is traced. Empty where nothing would be reflected.
-[[nodiscard]] std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex, const SampleStream& stream,
+/// One sample of the direct light reflected at `vertex`, weighted against BSDF sampling by the power
+/// heuristic, before its shadow ray is traced. Empty where nothing would be reflected.
+[[nodiscard]] std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex,
+                                                                const SampleStream& stream,
                                                                 std::uint32_t depth);
 
 /// The reflected light of all point, spot and directional lights, a shadow ray each.
-[[nodiscard]] Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed, RayCounts& rays);
+[[nodiscard]] Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed,
+                                   RayCounts& rays);
 
 }  // namespace relumine

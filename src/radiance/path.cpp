@@ -9,11 +9,11 @@
 namespace relumine {
 namespace {
 
-constexpr std::uint32_t roulette_depth = 4;       // scattering vertices before Russian roulette may end a path
-constexpr std::uint32_t lossless_depth = 256;     // from here on even paths that have lost nothing may end
-constexpr float max_survival = 0.95f;             // of those
+constexpr std::uint32_t roulette_depth = 4;    // scattering vertices before Russian roulette may end a path
+constexpr std::uint32_t lossless_depth = 256;  // from here on even paths that have lost nothing may end
+constexpr float max_survival = 0.95f;          // of those
 
-constexpr std::size_t least_packet = 4;           // fewer rays are faster one by one
+constexpr std::size_t least_packet = 8;  // fewer rays are faster one by one
 
 void add(SplitRadiance& sum, std::uint32_t scatterings, Spectrum radiance) {
     (scatterings == 0 ? sum.emission : scatterings == 1 ? sum.direct : sum.indirect) += radiance;
@@ -23,7 +23,8 @@ void add(SplitRadiance& sum, std::uint32_t scatterings, Spectrum radiance) {
 bool survives(PathState& path, const SampleStream& stream) {
     if (path.depth <= roulette_depth) return true;
     const float u = stream.next1(Dim::roulette, path.depth);
-    const float survival = std::min(max_component(path.throughput) * path.eta_scale, path.depth < lossless_depth ? 1.0f : max_survival);
+    const float survival = std::min(max_component(path.throughput) * path.eta_scale,
+                                    path.depth < lossless_depth ? 1.0f : max_survival);
     if (!(u < survival)) return false;
     path.throughput *= 1 / survival;
     return true;
@@ -41,15 +42,17 @@ struct ShadowPacket {
 };
 
 /// One step of a path at its hit: counts emission, proposes direct light, scatters.
-void advance(const Transport& t, PathState& path, std::uint32_t max_depth, const SampleStream& stream, SplitRadiance& sum,
-             ShadowPacket& shadows, std::size_t lane) {
+void advance(const Transport& t, PathState& path, std::uint32_t max_depth, const SampleStream& stream,
+             SplitRadiance& sum, ShadowPacket& shadows, std::size_t lane) {
     if (!path.hit) {
-        if (path.count_emission) add(sum, path.scatterings, path.throughput * arriving_emission(t, path, nullptr));
+        if (path.count_emission)
+            add(sum, path.scatterings, path.throughput * arriving_emission(t, path, nullptr));
         path.alive = false;
         return;
     }
     const Vertex vertex = make_vertex(t, path, stream);
-    if (path.count_emission) add(sum, path.scatterings, path.throughput * arriving_emission(t, path, &vertex.point));
+    if (path.count_emission)
+        add(sum, path.scatterings, path.throughput * arriving_emission(t, path, &vertex.point));
     path.alive = path.depth < max_depth;
     if (!path.alive) return;
     if (!is_delta(vertex.bsdf)) {
@@ -64,7 +67,8 @@ void advance(const Transport& t, PathState& path, std::uint32_t max_depth, const
 }
 
 std::size_t count_active(const std::array<Ray, packet_size>& rays) {
-    return static_cast<std::size_t>(std::ranges::count_if(rays, [](const Ray& ray) { return ray.t_max >= 0; }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(rays, [](const Ray& ray) { return ray.t_max >= 0; }));
 }
 
 void add_unshadowed(const Transport& t, const ShadowPacket& shadows, RadiancePacket& sums, RayCounts& rays) {
@@ -90,7 +94,8 @@ void trace_bounces(const Transport& t, PathPacket& paths, RayCounts& rays) {
     std::array<Hit, packet_size> hits;
     if (active >= least_packet) t.tracer.closest_hits(bounces, hits, Coherence::incoherent);
     for (std::size_t i = 0; i < packet_size; ++i)
-        if (paths[i].alive) paths[i].hit = active >= least_packet ? hits[i] : t.tracer.closest_hit(bounces[i]);
+        if (paths[i].alive)
+            paths[i].hit = active >= least_packet ? hits[i] : t.tracer.closest_hit(bounces[i]);
 }
 
 }  // namespace
@@ -112,7 +117,8 @@ Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stre
 
 void scatter_path(PathState& path, const Vertex& vertex, const SampleStream& stream) {
     path.alive = false;
-    const BsdfRandom u{has_lobes(vertex.bsdf) ? stream.next1(Dim::lobe, path.depth) : 0.0f, stream.next2(Dim::direction, path.depth)};
+    const BsdfRandom u{has_lobes(vertex.bsdf) ? stream.next1(Dim::lobe, path.depth) : 0.0f,
+                       stream.next2(Dim::direction, path.depth)};
     const auto scattered = sample(vertex.bsdf, vertex.w_out, u);
     if (!scattered || is_black(scattered->weight)) return;
     const WorldDir w_in = vertex.point.frame.to_world(scattered->w_in);
@@ -128,13 +134,16 @@ void scatter_path(PathState& path, const Vertex& vertex, const SampleStream& str
 }
 
 Spectrum arriving_emission(const Transport& t, const PathState& path, const SurfacePoint* hit_point) {
-    const Spectrum emitted = hit_point ? emitted_radiance(t.scene, *hit_point) : t.lights.environment_radiance(path.ray.direction);
+    const Spectrum emitted =
+        hit_point ? emitted_radiance(t.scene, *hit_point) : t.lights.environment_radiance(path.ray.direction);
     if (is_black(emitted) || path.bsdf_pdf == 0) return emitted;
-    const float light_pdf = hit_point ? t.lights.pdf(path.ray.origin, *hit_point) : t.lights.environment_pdf(path.ray.direction);
+    const float light_pdf =
+        hit_point ? t.lights.pdf(path.ray.origin, *hit_point) : t.lights.environment_pdf(path.ray.direction);
     return emitted * mis_weight(path.bsdf_pdf, light_pdf);
 }
 
-RadiancePacket path_radiance(const Transport& t, PathPacket paths, std::uint32_t max_depth, const StreamPacket& streams, RayCounts& rays) {
+RadiancePacket path_radiance(const Transport& t, PathPacket paths, std::uint32_t max_depth,
+                             const StreamPacket& streams, RayCounts& rays) {
     RadiancePacket sums;
     while (std::ranges::any_of(paths, &PathState::alive)) {
         ShadowPacket shadows;

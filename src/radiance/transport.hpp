@@ -25,8 +25,8 @@ struct Vertex {
     Bsdf bsdf;
 };
 
-/// Whether light may pass between the viewer's side and `w_in`: directions that the shading normal allows must agree with the
-/// geometric normal, so that no light comes from below the surface.
+/// Whether light may pass between the viewer's side and `w_in`: directions that the shading normal allows
+/// must agree with the geometric normal, so that no light comes from below the surface.
 inline bool sides_agree(const SurfacePoint& point, WorldDir w_in) {
     return (dot(w_in.v, point.geometric_normal) > 0) == (dot(w_in.v, point.frame.n) > 0);
 }

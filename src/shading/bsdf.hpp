@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How surfaces scatter light: a closed set of models, each with sample, eval and pdf of one convention.
 //
-// Directions are local, unit and point away from the surface; w_out has z > 0: the frame's normal is on the viewer's side.
-// eval and pdf describe what is not a delta lobe; delta lobes are met by sample alone.
+// Directions are local, unit and point away from the surface; w_out has z > 0: the frame's normal is on the
+// viewer's side. eval and pdf describe what is not a delta lobe; delta lobes are met by sample alone.
 #pragma once
 
 #include <optional>
@@ -41,7 +41,8 @@ struct RoughConductor {
     Ggx ggx;
 };
 
-/// Smooth glass: the boundary of a solid body, or a thin sheet with all its internal reflections, which does not bend light.
+/// Smooth glass: the boundary of a solid body, or a thin sheet with all its internal reflections, which does
+/// not bend light.
 struct SmoothDielectric {
     float eta = 1.5f;  // index of refraction on the other side over the one on the viewer's side
     Spectrum tint{1};  // of transmitted light
@@ -56,21 +57,25 @@ struct RoughDielectric {
     Ggx ggx;
 };
 
-/// glTF's opaque layering: a dielectric coat over a diffuse base, mixed with a metal of the same roughness [glTF 2.0, appendix B].
+/// glTF's opaque layering: a dielectric coat over a diffuse base, mixed with a metal of the same roughness
+/// [glTF 2.0, appendix B].
 struct MetallicRoughness {
-    Spectrum diffuse;                     // albedo under the coat
-    Spectrum coat_f0, coat_f90;           // of the coat: what it reflects, the base does not get
-    Spectrum specular_f0, specular_f90;   // of coat and metal together, weighted
+    Spectrum diffuse;                    // albedo under the coat
+    Spectrum coat_f0, coat_f90;          // of the coat: what it reflects, the base does not get
+    Spectrum specular_f0, specular_f90;  // of coat and metal together, weighted
     Ggx ggx;
-    bool smooth = false;                  // the specular lobe is a delta
+    bool smooth = false;  // the specular lobe is a delta
 };
 
-using Bsdf = std::variant<Lambert, Mirror, RoughConductor, SmoothDielectric, RoughDielectric, MetallicRoughness>;
+using Bsdf =
+    std::variant<Lambert, Mirror, RoughConductor, SmoothDielectric, RoughDielectric, MetallicRoughness>;
 
-#define RELUMINE_DECLARE_BSDF(Model)                                                                              \
-    [[nodiscard]] Spectrum eval(const Model&, LocalDir w_out, LocalDir w_in); /* f·|cos θ|, 1/sr */                \
-    [[nodiscard]] float pdf(const Model&, LocalDir w_out, LocalDir w_in);     /* 1/sr; 0 where sample never goes */ \
-    [[nodiscard]] std::optional<BsdfSample> sample(const Model&, LocalDir w_out, BsdfRandom u); /* empty: absorbed */
+#define RELUMINE_DECLARE_BSDF(Model)                                                                  \
+    [[nodiscard]] Spectrum eval(const Model&, LocalDir w_out, LocalDir w_in); /* f·|cos θ|, 1/sr */ \
+    [[nodiscard]] float pdf(const Model&, LocalDir w_out,                                             \
+                            LocalDir w_in); /* 1/sr; 0 where sample never goes */                     \
+    [[nodiscard]] std::optional<BsdfSample> sample(const Model&, LocalDir w_out,                      \
+                                                   BsdfRandom u); /* empty: absorbed */
 
 RELUMINE_DECLARE_BSDF(Lambert)
 RELUMINE_DECLARE_BSDF(Mirror)
@@ -106,10 +111,12 @@ inline bool has_lobes(const Bsdf& bsdf) {
 /// What is left of a BSDF that is not all delta when its delta lobe is taken away.
 [[nodiscard]] Bsdf without_delta(const Bsdf& bsdf);
 
-/// An approximation of the share of light that is reflected or transmitted at normal incidence, for the albedo layer.
+/// An approximation of the share of light that is reflected or transmitted at normal incidence, for the
+/// albedo layer.
 [[nodiscard]] Spectrum albedo(const Bsdf& bsdf);
 
-/// Fresnel reflectance of unpolarised light at a dielectric; `eta` as above, `cosine` ≥ 0 on the incident side.
+/// Fresnel reflectance of unpolarised light at a dielectric; `eta` as above, `cosine` ≥ 0 on the incident
+/// side.
 [[nodiscard]] float fresnel_dielectric(float cosine, float eta);
 
 }  // namespace relumine

@@ -39,8 +39,10 @@ const std::vector<NamedBsdf>& rough_bsdfs() {
         {"dielectric into", RoughDielectric{1.5f, Spectrum{1}, false, ggx(0.2f)}},
         {"dielectric out of", RoughDielectric{1 / 1.5f, Spectrum{1}, false, ggx(0.4f)}},
         {"dielectric thin", RoughDielectric{1.5f, Spectrum{0.9f}, true, ggx(0.3f)}},
-        {"layered", MetallicRoughness{Spectrum{0.5f}, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, ggx(0.25f)}},
-        {"layered metal", MetallicRoughness{Spectrum{0.3f}, Spectrum{0}, Spectrum{0}, Spectrum{0.4f}, Spectrum{0.5f}, ggx(0.2f)}},
+        {"layered", MetallicRoughness{Spectrum{0.5f}, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f},
+                                      Spectrum{1}, ggx(0.25f)}},
+        {"layered metal", MetallicRoughness{Spectrum{0.3f}, Spectrum{0}, Spectrum{0}, Spectrum{0.4f},
+                                            Spectrum{0.5f}, ggx(0.2f)}},
     };
     return all;
 }
@@ -58,13 +60,15 @@ using Sampler = std::function<std::optional<LocalDir>(BsdfRandom)>;
 /// ∫ density over a cell of θ × φ, by the midpoint rule on a grid within the cell.
 double cell_integral(const Density& density, int theta, int phi) {
     constexpr int fine = 12;
-    const double dtheta = 3.14159265358979 / (theta_cells * fine), dphi = 2 * 3.14159265358979 / (phi_cells * fine);
+    const double dtheta = 3.14159265358979 / (theta_cells * fine),
+                 dphi = 2 * 3.14159265358979 / (phi_cells * fine);
     double sum = 0;
     for (int i = 0; i < fine; ++i)
         for (int j = 0; j < fine; ++j) {
             const double t = (theta * fine + i + 0.5) * dtheta, p = (phi * fine + j + 0.5) * dphi;
             const double x = std::sin(t) * std::cos(p), y = std::sin(t) * std::sin(p), z = std::cos(t);
-            sum += std::sin(t) * density({{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}});
+            sum += std::sin(t)
+                   * density({{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}});
         }
     return sum * dtheta * dphi;
 }
@@ -88,7 +92,8 @@ double chi_square(const Sampler& sampler, const Density& density) {
     double total = 0;
     for (int t = 0; t < theta_cells; ++t)
         for (int p = 0; p < phi_cells; ++p)
-            total += expected[static_cast<std::size_t>(t * phi_cells + p)] = draws * cell_integral(density, t, p);
+            total += expected[static_cast<std::size_t>(t * phi_cells + p)] =
+                draws * cell_integral(density, t, p);
     expected.back() = std::max(0.0, draws - total);
     return testing::chi_square_p(observed, expected);
 }
@@ -105,21 +110,26 @@ Density density_of(const Bsdf& bsdf, LocalDir w_out) {
 }
 
 TEST(Bsdf, SamplesFollowThePdf) {  // χ², α = 1e-6 in all
-    const double level = testing::sidak(1e-6, static_cast<double>(rough_bsdfs().size() * view_cosines.size()));
+    const double level =
+        testing::sidak(1e-6, static_cast<double>(rough_bsdfs().size() * view_cosines.size()));
     for (const auto& [name, bsdf] : rough_bsdfs())
         for (const float cosine : view_cosines) {
             const LocalDir w_out = direction(cosine, 0.7f);
-            EXPECT_GT(chi_square(sampler_of(bsdf, w_out), density_of(bsdf, w_out)), level) << name << " at " << cosine;
+            EXPECT_GT(chi_square(sampler_of(bsdf, w_out), density_of(bsdf, w_out)), level)
+                << name << " at " << cosine;
         }
 }
 
 TEST(Bsdf, ChiSquareCatchesWrongSamplers) {
-    const Sampler uniform = [](BsdfRandom u) { return std::optional(direction(u.direction.x, 2 * pi * u.direction.y)); };
+    const Sampler uniform = [](BsdfRandom u) {
+        return std::optional(direction(u.direction.x, 2 * pi * u.direction.y));
+    };
     EXPECT_LT(chi_square(uniform, density_of(Lambert{Spectrum{1}}, direction(0.6f, 0))), 1e-6);
     for (const auto& [name, bsdf] : rough_bsdfs()) {
         // Neither diffuse reflection nor α = 1 (where bounded sampling is uniform) depends on the view.
         if (std::string_view(name) == "lambert" || std::string_view(name) == "conductor 1") continue;
-        const LocalDir w_out = direction(0.6f, 0.7f), tilted = direction(std::cos(std::acos(0.6f) + 0.1f), 0.7f);  // 6° off
+        const LocalDir w_out = direction(0.6f, 0.7f),
+                       tilted = direction(std::cos(std::acos(0.6f) + 0.1f), 0.7f);  // 6° off
         EXPECT_LT(chi_square(sampler_of(bsdf, tilted), density_of(bsdf, w_out)), 1e-6) << name;
     }
 }
@@ -127,7 +137,8 @@ TEST(Bsdf, ChiSquareCatchesWrongSamplers) {
 TEST(Bsdf, WeightIsEvalOverPdf) {
     for (const auto& [name, bsdf] : rough_bsdfs())
         for (std::uint32_t i = 0; i < 2000; ++i) {
-            const LocalDir w_out = direction(0.05f + 0.9f * unit_float(static_cast<std::uint32_t>(mix(i))), 1);
+            const LocalDir w_out =
+                direction(0.05f + 0.9f * unit_float(static_cast<std::uint32_t>(mix(i))), 1);
             const auto s = sample(bsdf, w_out, random_numbers(2, i));
             if (!s) continue;
             EXPECT_FALSE(s->delta);
@@ -142,7 +153,8 @@ testing::Estimate directional_albedo(const Bsdf& bsdf, LocalDir w_out) {
     std::vector<double> weights;
     for (std::uint32_t i = 0; i < 100'000; ++i) {
         const auto s = sample(bsdf, w_out, random_numbers(3, i));
-        weights.push_back(s ? s->weight.r * s->eta * s->eta : 0.0);  // undo the radiance scaling of refraction
+        weights.push_back(s ? s->weight.r * s->eta * s->eta
+                            : 0.0);  // undo the radiance scaling of refraction
     }
     return testing::estimate(weights);
 }
@@ -186,18 +198,21 @@ TEST(Bsdf, SmoothGlassConservesEnergy) {
     for (const float eta : {1.5f, 1 / 1.5f, 1.0f})
         for (const bool thin : {false, true})
             for (const float cosine : view_cosines) {
-                const auto [mean, error, count] = directional_albedo(SmoothDielectric{eta, Spectrum{1}, thin}, direction(cosine, 0));
+                const auto [mean, error, count] =
+                    directional_albedo(SmoothDielectric{eta, Spectrum{1}, thin}, direction(cosine, 0));
                 EXPECT_NEAR(mean, 1, 1e-4 + 0 * error) << eta << " " << cosine;
             }
 }
 
 TEST(Bsdf, SmoothCoatSplitsIntoDeltaAndDiffuse) {
-    const MetallicRoughness coat{Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, ggx(smooth_alpha), true};
+    const MetallicRoughness coat{Spectrum{1}, Spectrum{0.04f},   Spectrum{1}, Spectrum{0.04f},
+                                 Spectrum{1}, ggx(smooth_alpha), true};
     const LocalDir w_out = direction(0.7f, 0);
     double delta = 0, diffuse = 0;
     constexpr int n = 100'000;
     for (std::uint32_t i = 0; i < n; ++i)
-        if (const auto s = sample(coat, w_out, random_numbers(4, i))) (s->delta ? delta : diffuse) += s->weight.r / n;
+        if (const auto s = sample(coat, w_out, random_numbers(4, i)))
+            (s->delta ? delta : diffuse) += s->weight.r / n;
     EXPECT_NEAR(delta, schlick(Spectrum{0.04f}, Spectrum{1}, 0.7f).r, 2e-3);
     const double rest = directional_albedo(without_delta(coat), w_out).mean;
     EXPECT_NEAR(diffuse, rest, 0.01);
@@ -207,8 +222,9 @@ TEST(Bsdf, SmoothCoatSplitsIntoDeltaAndDiffuse) {
 
 TEST(Fresnel, MatchesClosedForms) {
     EXPECT_NEAR(fresnel_dielectric(1, 1.5f), 0.04f, 1e-6f);
-    EXPECT_NEAR(fresnel_dielectric(std::cos(std::atan(1.5f)), 1.5f), 0.5f * sqr((sqr(1.5f) - 1) / (sqr(1.5f) + 1)), 1e-5f);  // Brewster
-    EXPECT_EQ(fresnel_dielectric(0.5f, 1 / 1.5f), 1);  // total reflection
+    EXPECT_NEAR(fresnel_dielectric(std::cos(std::atan(1.5f)), 1.5f),
+                0.5f * sqr((sqr(1.5f) - 1) / (sqr(1.5f) + 1)), 1e-5f);  // Brewster
+    EXPECT_EQ(fresnel_dielectric(0.5f, 1 / 1.5f), 1);                   // total reflection
     EXPECT_NEAR(fresnel_dielectric(0.3f, 1), 0, 1e-6f);
 }
 

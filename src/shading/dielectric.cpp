@@ -59,7 +59,8 @@ std::optional<BsdfSample> sample(const SmoothDielectric& b, LocalDir w_out, Bsdf
     if (b.thin) return BsdfSample{-w_out, b.tint, 1 - r, true};
     const std::optional<LocalDir> w_in = refract(w_out, {{0, 0, 1}}, b.eta);
     if (!w_in) return {};
-    return BsdfSample{*w_in, b.tint / sqr(b.eta), 1 - r, true, b.eta};  // radiance scales with the index squared
+    return BsdfSample{*w_in, b.tint / sqr(b.eta), 1 - r, true,
+                      b.eta};  // radiance scales with the index squared
 }
 
 Spectrum eval(const RoughDielectric& b, LocalDir w_out, LocalDir w_in) {
@@ -70,7 +71,9 @@ Spectrum eval(const RoughDielectric& b, LocalDir w_out, LocalDir w_in) {
         const LocalDir m{normalize(w_out.v + mirrored.v)};
         const float r = reflectance(dot(w_out.v, m.v), b.eta, b.thin);
         const Spectrum share = reflected ? Spectrum{r} : b.tint * (1 - r);
-        return share * (ggx_density(b.ggx, m) * ggx_masking_shadowing(b.ggx, w_out, mirrored) / (4 * cos_theta(w_out)));
+        return share
+               * (ggx_density(b.ggx, m) * ggx_masking_shadowing(b.ggx, w_out, mirrored)
+                  / (4 * cos_theta(w_out)));
     }
     const auto m = refracting_facet(b, w_out, w_in);
     if (!m) return {};
@@ -113,7 +116,8 @@ std::optional<BsdfSample> sample(const RoughDielectric& b, LocalDir w_out, BsdfR
     }
     const float density = pdf(b, w_out, *w_in);
     if (!(density > 0)) return {};
-    return BsdfSample{*w_in, eval(b, w_out, *w_in) / density, density, false, reflected || b.thin ? 1 : b.eta};
+    return BsdfSample{*w_in, eval(b, w_out, *w_in) / density, density, false,
+                      reflected || b.thin ? 1 : b.eta};
 }
 
 }  // namespace relumine

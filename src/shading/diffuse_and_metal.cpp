@@ -21,7 +21,8 @@ Spectrum eval(const Mirror&, LocalDir, LocalDir) { return {}; }
 float pdf(const Mirror&, LocalDir, LocalDir) { return 0; }
 
 std::optional<BsdfSample> sample(const Mirror& b, LocalDir w_out, BsdfRandom) {
-    return BsdfSample{{{-w_out.v.x, -w_out.v.y, w_out.v.z}}, schlick(b.f0, Spectrum{1}, cos_theta(w_out)), 1, true};
+    return BsdfSample{
+        {{-w_out.v.x, -w_out.v.y, w_out.v.z}}, schlick(b.f0, Spectrum{1}, cos_theta(w_out)), 1, true};
 }
 
 Spectrum eval(const RoughConductor& b, LocalDir w_out, LocalDir w_in) {

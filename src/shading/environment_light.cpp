@@ -12,7 +12,9 @@ namespace {
 float mean_of_channels(Spectrum s) { return (s.r + s.g + s.b) / 3; }
 
 /// cos θ at the border above row `y`.
-double border_cosine(int y, int height) { return std::cos(static_cast<double>(y) * 3.14159265358979323846 / height); }
+double border_cosine(int y, int height) {
+    return std::cos(static_cast<double>(y) * 3.14159265358979323846 / height);
+}
 
 /// The mean of the bilinear interpolant over each texel's area: a [1 6 1]/8 kernel along both axes.
 std::vector<float> interpolated_means(const Environment& e) {
@@ -21,7 +23,8 @@ std::vector<float> interpolated_means(const Environment& e) {
     const auto horizontal = [&](std::size_t x, std::size_t y) {
         const Spectrum* row = &e.radiance[y * width];
         return (mean_of_channels(row[(x + width - 1) % width]) + 6 * mean_of_channels(row[x])
-                + mean_of_channels(row[(x + 1) % width])) / 8;
+                + mean_of_channels(row[(x + 1) % width]))
+               / 8;
     };
     for (std::size_t y = 0; y < height; ++y)
         for (std::size_t x = 0; x < width; ++x) {
@@ -61,7 +64,9 @@ float EnvironmentLight::mean_radiance(const Environment& e) {
     double sum = 0;
     for (int y = 0; y < e.height; ++y) {
         double row = 0;
-        for (int x = 0; x < e.width; ++x) row += mean_of_channels(e.radiance[static_cast<std::size_t>(y) * static_cast<std::size_t>(e.width) + static_cast<std::size_t>(x)]);
+        for (int x = 0; x < e.width; ++x)
+            row += mean_of_channels(e.radiance[static_cast<std::size_t>(y) * static_cast<std::size_t>(e.width)
+                                               + static_cast<std::size_t>(x)]);
         sum += row * (border_cosine(y, e.height) - border_cosine(y + 1, e.height));
     }
     return static_cast<float>(sum / (2.0 * e.width));
@@ -75,12 +80,14 @@ EnvironmentLight::EnvironmentLight(const Environment& environment, float floor)
     texel_cdf_.resize(height * (width + 1));
     density_.resize(width * height);
     row_cosine_.resize(height + 1);
-    for (int y = 0; y <= height_; ++y) row_cosine_[static_cast<std::size_t>(y)] = static_cast<float>(border_cosine(y, height_));
+    for (int y = 0; y <= height_; ++y)
+        row_cosine_[static_cast<std::size_t>(y)] = static_cast<float>(border_cosine(y, height_));
 
     std::vector<double> rows(height), texels(width);
     const auto solid_angle = [&](std::size_t y) {
         const int j = static_cast<int>(y);
-        return 2 * 3.14159265358979323846 / width_ * (border_cosine(j, height_) - border_cosine(j + 1, height_));
+        return 2 * 3.14159265358979323846 / width_
+               * (border_cosine(j, height_) - border_cosine(j + 1, height_));
     };
     for (std::size_t y = 0; y < height; ++y) {
         for (std::size_t x = 0; x < width; ++x) texels[x] = std::max(0.0f, means[y * width + x] - floor);
@@ -92,7 +99,8 @@ EnvironmentLight::EnvironmentLight(const Environment& environment, float floor)
         const float* cdf = &texel_cdf_[y * (width + 1)];
         const float row_probability = row_cdf_[y + 1] - row_cdf_[y];
         for (std::size_t x = 0; x < width; ++x)
-            density_[y * width + x] = row_probability * (cdf[x + 1] - cdf[x]) / static_cast<float>(solid_angle(y));
+            density_[y * width + x] =
+                row_probability * (cdf[x + 1] - cdf[x]) / static_cast<float>(solid_angle(y));
     }
 }
 
@@ -108,9 +116,12 @@ Spectrum EnvironmentLight::radiance(WorldDir direction) const {
     const auto [x, y] = coordinates(direction);
     const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
     const float s = x - 0.5f - left, t = y - 0.5f - top;
-    const auto wrap = [&](int i) { return static_cast<std::size_t>(i < 0 ? i + width_ : i >= width_ ? i - width_ : i); };
+    const auto wrap = [&](int i) {
+        return static_cast<std::size_t>(i < 0 ? i + width_ : i >= width_ ? i - width_ : i);
+    };
     const std::size_t x0 = wrap(static_cast<int>(left)), x1 = wrap(static_cast<int>(left) + 1);
-    const std::size_t y0 = row(std::max(static_cast<int>(top), 0)), y1 = row(std::min(static_cast<int>(top) + 1, height_ - 1));
+    const std::size_t y0 = row(std::max(static_cast<int>(top), 0)),
+                      y1 = row(std::min(static_cast<int>(top) + 1, height_ - 1));
     const auto& texels = environment_.radiance;
     return lerp(lerp(texels[y0 + x0], texels[y0 + x1], s), lerp(texels[y1 + x0], texels[y1 + x1], s), t);
 }
@@ -128,7 +139,9 @@ EnvironmentSample EnvironmentLight::sample(Point2 u) const {
     const Drawn x = draw({&texel_cdf_[y.element * (width + 1)], width + 1}, u.x);
     const float cosine = lerp(row_cosine_[y.element], row_cosine_[y.element + 1], y.fraction);
     const float sine = std::sqrt(std::max(0.0f, 1 - sqr(cosine)));
-    const float phi = 2 * pi * ((static_cast<float>(x.element) + x.fraction) / static_cast<float>(width_) - 0.5f) - environment_.rotation;
+    const float phi =
+        2 * pi * ((static_cast<float>(x.element) + x.fraction) / static_cast<float>(width_) - 0.5f)
+        - environment_.rotation;
     return {{{sine * std::cos(phi), cosine, sine * std::sin(phi)}}, density_[y.element * width + x.element]};
 }
 

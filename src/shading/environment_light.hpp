@@ -14,9 +14,9 @@ struct EnvironmentSample {
     float pdf = 0;  // per steradian
 };
 
-/// The environment with a sampling density over its texels' areas: proportional to what the texel shines over `floor` (its
-/// interpolated mean). With a floor of 0 this is plain importance sampling; with the mean it is MIS compensation [Karlik19],
-/// right only beside BSDF sampling.
+/// The environment with a sampling density over its texels' areas: proportional to what the texel shines over
+/// `floor` (its interpolated mean). With a floor of 0 this is plain importance sampling; with the mean it is
+/// MIS compensation [Karlik19], right only beside BSDF sampling.
 class EnvironmentLight {
   public:
     EnvironmentLight(const Environment& environment, float floor);
@@ -36,7 +36,9 @@ class EnvironmentLight {
         float x, y;  // continuous, texel (i, j) covers [i, i+1) × [j, j+1)
     };
     [[nodiscard]] TexelCoordinates coordinates(WorldDir direction) const;
-    [[nodiscard]] std::size_t row(int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_); }
+    [[nodiscard]] std::size_t row(int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    }
 
     const Environment& environment_;
     int width_, height_;

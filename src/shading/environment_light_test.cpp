@@ -37,8 +37,8 @@ TEST(EnvironmentLight, FollowsTheLatLongConvention) {  // u = atan2(z, x)/2π + 
     };
     EXPECT_NEAR(lit(5, 1, at(5.5f / 8, 1.5f / 4)), 1, 1e-5f);
     EXPECT_NEAR(lit(5, 1, at(6.0f / 8, 1.5f / 4)), 0.5f, 1e-5f);  // halfway to the neighbour
-    EXPECT_NEAR(lit(4, 1, {1, 0.414f, 0.414f}), 1, 0.05f);      // +x is u = ½; +z is to its right
-    EXPECT_NEAR(lit(0, 0, {-1e-3f, 1, 0}), 0.5f, 2e-2f);         // straight up: between texels 0 and 7
+    EXPECT_NEAR(lit(4, 1, {1, 0.414f, 0.414f}), 1, 0.05f);        // +x is u = ½; +z is to its right
+    EXPECT_NEAR(lit(0, 0, {-1e-3f, 1, 0}), 0.5f, 2e-2f);          // straight up: between texels 0 and 7
     // Turned counter-clockwise by 90° as seen from +Y, what was at +x is at −z.
     EXPECT_NEAR(lit(4, 1, {0.414f, 0.414f, -1}, pi / 2), 1, 0.05f);
 }
@@ -69,17 +69,22 @@ Draws test_sampling(const Environment& environment, float floor, const Environme
     double integral = 0;
     for (int row = 0; row < rows * fine; ++row)
         for (int column = 0; column < columns * fine; ++column) {
-            const double z = 1 - 2 * (row + 0.5) / (rows * fine), phi = 2 * 3.14159265358979 * ((column + 0.5) / (columns * fine) - 0.5);
-            const double sine = std::sqrt(1 - z * z), area = 4 * 3.14159265358979 / (rows * fine * columns * fine);
-            const WorldDir d{{static_cast<float>(sine * std::cos(phi)), static_cast<float>(z), static_cast<float>(sine * std::sin(phi))}};
-            expected[static_cast<std::size_t>(row / fine * columns + column / fine)] += draws * area * pdf_from.pdf(d);
+            const double z = 1 - 2 * (row + 0.5) / (rows * fine),
+                         phi = 2 * 3.14159265358979 * ((column + 0.5) / (columns * fine) - 0.5);
+            const double sine = std::sqrt(1 - z * z),
+                         area = 4 * 3.14159265358979 / (rows * fine * columns * fine);
+            const WorldDir d{{static_cast<float>(sine * std::cos(phi)), static_cast<float>(z),
+                              static_cast<float>(sine * std::sin(phi))}};
+            expected[static_cast<std::size_t>(row / fine * columns + column / fine)] +=
+                draws * area * pdf_from.pdf(d);
             integral += area * light.radiance(d).r;
         }
     return {testing::chi_square_p(observed, expected), energy / integral};
 }
 
 TEST(EnvironmentLight, SamplesFollowThePdf) {
-    const Environment environment = random_environment(12, 6, 0.5f);  // few texels, so that the quadrature resolves them
+    const Environment environment =
+        random_environment(12, 6, 0.5f);  // few texels, so that the quadrature resolves them
     const auto [p, energy] = test_sampling(environment, 0, EnvironmentLight(environment, 0));
     EXPECT_GT(p, 1e-6);
     EXPECT_NEAR(energy, 1, 0.01);
@@ -94,7 +99,9 @@ TEST(EnvironmentLight, DensityCoversWhateverShines) {
         const auto [x, y] = SampleStream{2, i, 1, PointSet::independent}.next2(Dim::light_point);
         const float z = 1 - 2 * y, sine = std::sqrt(1 - z * z);
         const WorldDir d{{sine * std::cos(2 * pi * x), z, sine * std::sin(2 * pi * x)}};
-        if (light.radiance(d).r > 0) { ASSERT_GT(light.pdf(d), 0); }
+        if (light.radiance(d).r > 0) {
+            ASSERT_GT(light.pdf(d), 0);
+        }
     }
 }
 

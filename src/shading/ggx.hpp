@@ -9,7 +9,10 @@
 namespace relumine {
 
 /// How masking towards the viewer and shadowing towards the light go together.
-enum class Masking : std::uint8_t { correlated /* by height [Heitz14, eq. 99] */, separable /* a plain product */ };
+enum class Masking : std::uint8_t {
+    correlated /* by height [Heitz14, eq. 99] */,
+    separable /* a plain product */
+};
 
 /// Roughness below which a surface counts as perfectly smooth.
 inline constexpr float smooth_alpha = 1e-3f;
@@ -36,10 +39,12 @@ inline float ggx_masking(const Ggx& g, LocalDir w) { return 1 / (1 + ggx_lambda(
 /// Visible and lit share of the microfacets; both directions on the surface's same side or opposite ones.
 inline float ggx_masking_shadowing(const Ggx& g, LocalDir w_out, LocalDir w_in) {
     const float lambda_out = ggx_lambda(g, w_out), lambda_in = ggx_lambda(g, w_in);
-    return g.masking == Masking::correlated ? 1 / (1 + lambda_out + lambda_in) : 1 / ((1 + lambda_out) * (1 + lambda_in));
+    return g.masking == Masking::correlated ? 1 / (1 + lambda_out + lambda_in)
+                                            : 1 / ((1 + lambda_out) * (1 + lambda_in));
 }
 
-/// A point on the unit sphere's cap z ≥ −`lowest`, uniform in solid angle, as the tip of a mirrored view ray [Dupuy23].
+/// A point on the unit sphere's cap z ≥ −`lowest`, uniform in solid angle, as the tip of a mirrored view ray
+/// [Dupuy23].
 inline Vec3 sample_cap(float lowest, Point2 u) {
     const float phi = 2 * pi * u.x;
     const float z = (1 - u.y) * (1 + lowest) - lowest;
@@ -77,7 +82,8 @@ inline LocalDir sample_reflection(const Ggx& g, LocalDir w_out, Point2 u) {
 
 /// 1/sr over reflected directions with half vector `m` [Eto23, eq. 8].
 inline float reflection_pdf(const Ggx& g, LocalDir w_out, LocalDir m) {
-    const float stretched_length = std::sqrt(sqr(g.alpha) * (sqr(w_out.v.x) + sqr(w_out.v.y)) + sqr(w_out.v.z));
+    const float stretched_length =
+        std::sqrt(sqr(g.alpha) * (sqr(w_out.v.x) + sqr(w_out.v.y)) + sqr(w_out.v.z));
     return ggx_density(g, m) / (2 * (reflection_bound(g, w_out) * w_out.v.z + stretched_length));
 }
 

@@ -10,8 +10,8 @@ namespace relumine {
 namespace {
 
 constexpr std::uint32_t no_light = 0xffffffffu;
-/// With both an environment and local lights, neither gets less than this share of the samples: power says little about
-/// which of them a point sees.
+/// With both an environment and local lights, neither gets less than this share of the samples: power says
+/// little about which of them a point sees.
 constexpr float min_group_share = 0.3f;
 /// So that rounding does not make a uniform sky look uneven.
 constexpr float flat_margin = 1.0001f;
@@ -25,7 +25,8 @@ double mean_emission(const SceneData& scene, const Mesh& mesh, std::uint32_t tri
     constexpr int side = 4;
     double sum = 0;
     for (int i = 0; i < side * side; ++i) {
-        const Point2 u{(static_cast<float>(i % side) + 0.5f) / side, (static_cast<float>(i / side) + 0.5f) / side};
+        const Point2 u{(static_cast<float>(i % side) + 0.5f) / side,
+                       (static_cast<float>(i / side) + 0.5f) / side};
         const Point2 b = uniform_triangle(u);
         Hit hit;
         hit.u = b.x;
@@ -63,33 +64,40 @@ LightSampler::LightSampler(const SceneData& scene, const LightSelection& selecti
     double environment_power = 0;
     if (scene.environment) {
         const float mean = EnvironmentLight::mean_radiance(*scene.environment);
-        const float floor = std::max(selection.threshold, selection.compensate_for_mis ? mean * flat_margin : 0.0f);
+        const float floor =
+            std::max(selection.threshold, selection.compensate_for_mis ? mean * flat_margin : 0.0f);
         environment_.emplace(*scene.environment, floor);
         if (environment_->can_sample()) environment_power = 4 * pi * pi * sqr(scene.bounds.radius()) * mean;
     }
     if (environment_power > 0)
-        environment_probability_ = local_power <= 0 ? 1.0f
-                                                    : std::clamp(static_cast<float>(environment_power / (environment_power + local_power)),
-                                                                 min_group_share, 1 - min_group_share);
+        environment_probability_ =
+            local_power <= 0
+                ? 1.0f
+                : std::clamp(static_cast<float>(environment_power / (environment_power + local_power)),
+                             min_group_share, 1 - min_group_share);
     if (local_power > 0) local_probability_ = 1 - environment_probability_;
     for (std::size_t i = 0; i < triangles_.size() && local_power > 0; ++i)
         triangles_[i].probability = local_probability_ * (local_cdf_[i + 1] - local_cdf_[i]);
 }
 
-void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& selection, std::vector<double>& powers) {
+void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& selection,
+                                         std::vector<double>& powers) {
     const Mesh& mesh = scene_.meshes[index(scene_.instances[i].mesh)];
     const Material& material = scene_.materials[index(mesh.material)];
     if (mean_of_channels(material.emission) <= selection.threshold) return;
     first_triangle_[i] = static_cast<std::uint32_t>(triangles_.size());
-    const float winding = determinant(scene_.instances[i].world_from_object) < 0 && !scene_.instances[i].identity ? -1.0f : 1.0f;
+    const float winding =
+        determinant(scene_.instances[i].world_from_object) < 0 && !scene_.instances[i].identity ? -1.0f
+                                                                                                : 1.0f;
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto [a, b, c] = world_triangle(scene_, i, t);
         const Vec3 normal = cross(b - a, c - a) * winding;
         const float area = 0.5f * length(normal);
-        triangles_.push_back({a, b - a, c - a, area > 0 ? normalize(normal) : normal, area, 0, rounding_offset({a, b, c}),
-                              i, t, material.double_sided});
+        triangles_.push_back({a, b - a, c - a, area > 0 ? normalize(normal) : normal, area, 0,
+                              rounding_offset({a, b, c}), i, t, material.double_sided});
         local_.push_back({Kind::triangle, static_cast<std::uint32_t>(triangles_.size() - 1)});
-        powers.push_back(double{pi} * area * mean_emission(scene_, mesh, t) * (material.double_sided ? 2 : 1));
+        powers.push_back(double{pi} * area * mean_emission(scene_, mesh, t)
+                         * (material.double_sided ? 2 : 1));
     }
 }
 
@@ -101,11 +109,13 @@ void LightSampler::add_delta_lights(std::vector<double>& powers) {
     for (std::uint32_t i = 0; i < scene_.spot_lights.size(); ++i) {
         const SpotLight& light = scene_.spot_lights[i];
         local_.push_back({Kind::spot, i});
-        powers.push_back(2 * double{pi} * (1 - 0.5 * (light.cos_inner + light.cos_outer)) * mean_of_channels(light.intensity));
+        powers.push_back(2 * double{pi} * (1 - 0.5 * (light.cos_inner + light.cos_outer))
+                         * mean_of_channels(light.intensity));
     }
     for (std::uint32_t i = 0; i < scene_.directional_lights.size(); ++i) {
         local_.push_back({Kind::directional, i});
-        powers.push_back(double{pi} * sqr(scene_.bounds.radius()) * mean_of_channels(scene_.directional_lights[i].irradiance));
+        powers.push_back(double{pi} * sqr(scene_.bounds.radius())
+                         * mean_of_channels(scene_.directional_lights[i].irradiance));
     }
 }
 
@@ -117,7 +127,8 @@ float LightSampler::triangle_density(const EmissiveTriangle& light, Vec3 from, V
     return light.probability * distance2 / (light.area * cosine);
 }
 
-std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle& light, Vec3 from, Point2 u) const {
+std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle& light, Vec3 from,
+                                                         Point2 u) const {
     const Point2 b = uniform_triangle(u);
     const Vec3 point = light.corner + light.edge1 * b.x + light.edge2 * b.y;
     const Vec3 to_light = point - from;
@@ -134,7 +145,11 @@ std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle&
         const TextureCoordinates at = texture_coordinates(mesh, hit);
         radiance = material_emission(scene_, material, at.uv) * opacity(scene_, material, at);
     }
-    return LightSample{{to_light / distance}, point + light.normal * (front ? light.offset : -light.offset), distance, radiance, density};
+    return LightSample{{to_light / distance},
+                       point + light.normal * (front ? light.offset : -light.offset),
+                       distance,
+                       radiance,
+                       density};
 }
 
 std::optional<LightSample> LightSampler::sample_local(Vec3 from, float u_choice, Point2 u) const {
@@ -155,10 +170,15 @@ std::optional<LightSample> LightSampler::sample(Vec3 from, float u_choice, Point
     if (u_choice < environment_probability_) {
         const EnvironmentSample drawn = environment_->sample(u);
         if (!(drawn.pdf > 0)) return {};
-        return LightSample{drawn.direction, {}, infinity, environment_->radiance(drawn.direction), environment_probability_ * drawn.pdf};
+        return LightSample{drawn.direction,
+                           {},
+                           infinity,
+                           environment_->radiance(drawn.direction),
+                           environment_probability_ * drawn.pdf};
     }
     if (local_probability_ <= 0) return {};
-    return sample_local(from, std::min((u_choice - environment_probability_) / local_probability_, 0x1.fffffep-1f), u);
+    return sample_local(
+        from, std::min((u_choice - environment_probability_) / local_probability_, 0x1.fffffep-1f), u);
 }
 
 float LightSampler::pdf(Vec3 from, const SurfacePoint& hit) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All lights of a scene as one: drawing a direction towards light, and the density with which that would have been drawn.
+// All lights of a scene as one: drawing a direction towards light, and the density with which that would have
+// been drawn.
 #pragma once
 
 #include <memory>
@@ -12,19 +13,19 @@
 namespace relumine {
 
 struct LightSample {
-    WorldDir w_in;        // from the shading point
-    Vec3 target;          // the point on the light; only where `distance` is finite
+    WorldDir w_in;  // from the shading point
+    Vec3 target;    // the point on the light; only where `distance` is finite
     float distance = infinity;
-    Spectrum radiance;    // incident; for delta lights: irradiance on a surface that faces the light
-    float pdf = 0;        // per steradian; for delta lights: probability
+    Spectrum radiance;  // incident; for delta lights: irradiance on a surface that faces the light
+    float pdf = 0;      // per steradian; for delta lights: probability
     bool delta = false;
 };
 
 /// Which part of the light is sampled, and how.
 struct LightSelection {
-    float threshold = 0;               // radiance (channels' mean) that environment texels and emitters must exceed
-    bool delta_lights = true;          // point, spot and directional lights are among the choices
-    bool compensate_for_mis = true;    // lower the environment's density by its mean [Karlik19]
+    float threshold = 0;       // radiance (channels' mean) that environment texels and emitters must exceed
+    bool delta_lights = true;  // point, spot and directional lights are among the choices
+    bool compensate_for_mis = true;  // lower the environment's density by its mean [Karlik19]
 };
 
 /// Draws lights by power and points on them uniformly. Immutable.
@@ -33,10 +34,12 @@ class LightSampler {
     LightSampler(const SceneData& scene, const LightSelection& selection);
     ~LightSampler();
 
-    /// A direction towards light from `from`; empty where nothing can be sampled or the sample shines away from the point.
+    /// A direction towards light from `from`; empty where nothing can be sampled or the sample shines away
+    /// from the point.
     [[nodiscard]] std::optional<LightSample> sample(Vec3 from, float u_choice, Point2 u) const;
 
-    /// Density with which `sample` at `from` would have drawn the emissive surface point `hit` (seen from `from`).
+    /// Density with which `sample` at `from` would have drawn the emissive surface point `hit` (seen from
+    /// `from`).
     [[nodiscard]] float pdf(Vec3 from, const SurfacePoint& hit) const;
     /// The same for the environment.
     [[nodiscard]] float environment_pdf(WorldDir direction) const;
@@ -62,9 +65,11 @@ class LightSampler {
         std::uint32_t index;
     };
 
-    void add_emissive_instance(std::uint32_t instance, const LightSelection& selection, std::vector<double>& powers);
+    void add_emissive_instance(std::uint32_t instance, const LightSelection& selection,
+                               std::vector<double>& powers);
     void add_delta_lights(std::vector<double>& powers);
-    [[nodiscard]] std::optional<LightSample> sample_triangle(const EmissiveTriangle& light, Vec3 from, Point2 u) const;
+    [[nodiscard]] std::optional<LightSample> sample_triangle(const EmissiveTriangle& light, Vec3 from,
+                                                             Point2 u) const;
     [[nodiscard]] std::optional<LightSample> sample_local(Vec3 from, float u_choice, Point2 u) const;
     [[nodiscard]] float triangle_density(const EmissiveTriangle& light, Vec3 from, Vec3 on_light) const;
 
@@ -74,13 +79,14 @@ class LightSampler {
     std::vector<EmissiveTriangle> triangles_;
     std::vector<std::uint32_t> first_triangle_;  // per instance; no_light where it has none
     std::vector<LocalLight> local_;
-    std::vector<float> local_cdf_;               // local_.size() + 1
+    std::vector<float> local_cdf_;  // local_.size() + 1
 };
 
 /// The light of point, spot and directional lights, one sample each; for methods that loop over all of them.
 [[nodiscard]] std::vector<LightSample> delta_light_samples(const SceneData& scene, Vec3 from);
 
-/// The radiance over which light counts as bright: `factor` times the mean that the scene's light has over the sphere.
+/// The radiance over which light counts as bright: `factor` times the mean that the scene's light has over
+/// the sphere.
 [[nodiscard]] float bright_threshold(const SceneData& scene, float factor);
 
 }  // namespace relumine

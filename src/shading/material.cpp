@@ -20,14 +20,17 @@ Factors factors_at(const SceneData& scene, const SurfacePoint& p) {
     const Material& m = *p.material;
     Factors f{m.base_color * p.vertex_color, m.metallic, 0, m.transmission, m.specular, m.specular_color};
     float roughness = m.roughness;
-    if (m.base_color_texture) f.base_color *= rgb(sample_texture(scene, *m.base_color_texture, p.uv, Encoding::srgb));
+    if (m.base_color_texture)
+        f.base_color *= rgb(sample_texture(scene, *m.base_color_texture, p.uv, Encoding::srgb));
     if (m.metallic_roughness_texture) {
         const Vec4 texel = sample_texture(scene, *m.metallic_roughness_texture, p.uv, Encoding::linear);
         roughness *= texel.y;
         f.metallic *= texel.z;
     }
-    if (m.transmission_texture) f.transmission *= sample_texture(scene, *m.transmission_texture, p.uv, Encoding::linear).x;
-    if (m.specular_texture) f.specular *= sample_texture(scene, *m.specular_texture, p.uv, Encoding::linear).w;
+    if (m.transmission_texture)
+        f.transmission *= sample_texture(scene, *m.transmission_texture, p.uv, Encoding::linear).x;
+    if (m.specular_texture)
+        f.specular *= sample_texture(scene, *m.specular_texture, p.uv, Encoding::linear).w;
     if (m.specular_color_texture)
         f.specular_color *= rgb(sample_texture(scene, *m.specular_color_texture, p.uv, Encoding::srgb));
     f.alpha = sqr(roughness);
@@ -53,8 +56,9 @@ Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking)
     const Spectrum coat_f0 = clamped(f.specular_color * sqr((ior - 1) / (ior + 1))) * f.specular;
     const Spectrum coat_f90{f.specular};
     if (metallic <= 0 && f.specular <= 0) return Lambert{f.base_color};
-    return MetallicRoughness{f.base_color * (1 - metallic), coat_f0, coat_f90, lerp(coat_f0, f.base_color, metallic),
-                             lerp(coat_f90, Spectrum{1}, metallic), ggx, smooth};
+    return MetallicRoughness{
+        f.base_color * (1 - metallic),         coat_f0, coat_f90, lerp(coat_f0, f.base_color, metallic),
+        lerp(coat_f90, Spectrum{1}, metallic), ggx,     smooth};
 }
 
 }  // namespace
@@ -63,13 +67,14 @@ Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, f
     const Factors f = factors_at(scene, p);
     const float glass_share = f.transmission * (1 - f.metallic);
     if (u < glass_share) return glass(p, f, masking);
-    return opaque_layers(f, glass_share > 0 ? f.metallic / (1 - glass_share) : f.metallic, p.material->ior, masking);
+    return opaque_layers(f, glass_share > 0 ? f.metallic / (1 - glass_share) : f.metallic, p.material->ior,
+                         masking);
 }
 
 UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(scene.materials.data()) {
     for (const Material& m : scene.materials) {
-        const bool varies = m.base_color_texture || m.metallic_roughness_texture || m.transmission_texture || m.specular_texture
-                            || m.specular_color_texture || m.transmission > 0;
+        const bool varies = m.base_color_texture || m.metallic_roughness_texture || m.transmission_texture
+                            || m.specular_texture || m.specular_color_texture || m.transmission > 0;
         SurfacePoint anywhere;
         anywhere.material = &m;
         bsdfs_.push_back(varies ? std::nullopt : std::optional(make_bsdf(scene, anywhere, masking, 0)));
@@ -89,7 +94,8 @@ Spectrum emitted_radiance(const SceneData& scene, const SurfacePoint& p) {
 float opacity(const SceneData& scene, const Material& material, const TextureCoordinates& at) {
     if (material.alpha_mode == AlphaMode::opaque) return 1;
     float alpha = material.base_alpha * at.vertex_alpha;
-    if (material.base_color_texture) alpha *= sample_texture(scene, *material.base_color_texture, at.uv, Encoding::srgb).w;
+    if (material.base_color_texture)
+        alpha *= sample_texture(scene, *material.base_color_texture, at.uv, Encoding::srgb).w;
     if (material.alpha_mode == AlphaMode::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
     return alpha;
 }

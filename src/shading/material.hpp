@@ -9,7 +9,8 @@
 
 namespace relumine {
 
-/// The BSDF at `p`. Where a material is partly transmissive, `u` in [0, 1) decides whether this is glass or the opaque layering.
+/// The BSDF at `p`. Where a material is partly transmissive, `u` in [0, 1) decides whether this is glass or
+/// the opaque layering.
 [[nodiscard]] Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u);
 
 /// The BSDFs of the materials that are the same everywhere and from both sides, made once.
@@ -32,7 +33,8 @@ class UniformBsdfs {
 [[nodiscard]] Spectrum emitted_radiance(const SceneData& scene, const SurfacePoint& p);
 
 /// As above, at texture coordinates, without regard to sides.
-[[nodiscard]] Spectrum material_emission(const SceneData& scene, const Material& material, const std::array<Vec2, 2>& uv);
+[[nodiscard]] Spectrum material_emission(const SceneData& scene, const Material& material,
+                                         const std::array<Vec2, 2>& uv);
 
 /// Opacity in [0, 1]: 0 or 1 for alpha masks.
 [[nodiscard]] float opacity(const SceneData& scene, const Material& material, const TextureCoordinates& at);
@@ -41,6 +43,8 @@ class UniformBsdfs {
 [[nodiscard]] Spectrum transmittance(const Material& material, float distance);
 
 /// Whether light inside the body behind this material is attenuated.
-inline bool attenuates(const Material& material) { return material.solid && std::isfinite(material.attenuation_distance); }
+inline bool attenuates(const Material& material) {
+    return material.solid && std::isfinite(material.attenuation_distance);
+}
 
 }  // namespace relumine

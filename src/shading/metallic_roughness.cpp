@@ -38,7 +38,8 @@ float pdf(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in) {
     if (cos_theta(w_in) <= 0) return 0;
     const float specular = specular_probability(b, w_out);
     const float diffuse = (1 - specular) * cos_theta(w_in) * inv_pi;
-    return b.smooth ? diffuse : diffuse + specular * reflection_pdf(b.ggx, w_out, {normalize(w_out.v + w_in.v)});
+    return b.smooth ? diffuse
+                    : diffuse + specular * reflection_pdf(b.ggx, w_out, {normalize(w_out.v + w_in.v)});
 }
 
 std::optional<BsdfSample> sample(const MetallicRoughness& b, LocalDir w_out, BsdfRandom u) {
@@ -48,7 +49,8 @@ std::optional<BsdfSample> sample(const MetallicRoughness& b, LocalDir w_out, Bsd
         const Spectrum reflected = schlick(b.specular_f0, b.specular_f90, cos_theta(w_out));
         return BsdfSample{{{-w_out.v.x, -w_out.v.y, w_out.v.z}}, reflected / specular, specular, true};
     }
-    const LocalDir w_in = choose_specular ? sample_reflection(b.ggx, w_out, u.direction) : cosine_hemisphere(u.direction);
+    const LocalDir w_in =
+        choose_specular ? sample_reflection(b.ggx, w_out, u.direction) : cosine_hemisphere(u.direction);
     const float density = pdf(b, w_out, w_in);
     if (!(density > 0)) return {};
     return BsdfSample{w_in, eval(b, w_out, w_in) / density, density};

@@ -22,7 +22,8 @@ inline LocalDir cosine_hemisphere(Point2 u) {
     return {{d.x, d.y, std::sqrt(std::max(0.0f, 1 - sqr(d.x) - sqr(d.y)))}};
 }
 
-/// Barycentric weights of the second and third corner, uniform over the triangle's area, low distortion [Heitz19].
+/// Barycentric weights of the second and third corner, uniform over the triangle's area, low distortion
+/// [Heitz19].
 inline Point2 uniform_triangle(Point2 u) {
     if (u.y > u.x) return {0.5f * u.x, u.y - 0.5f * u.x};
     return {u.x - 0.5f * u.y, 0.5f * u.y};

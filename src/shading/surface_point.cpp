@@ -7,7 +7,8 @@
 namespace relumine {
 namespace {
 
-/// The least cosine between viewer and shading normal; a smaller one would leave the viewer under the surface.
+/// The least cosine between viewer and shading normal; a smaller one would leave the viewer under the
+/// surface.
 constexpr float min_view_cosine = 1e-3f;
 
 template <typename T>
@@ -29,7 +30,8 @@ std::array<Vec2, 2> interpolate_uv(const Mesh& mesh, const Triangle& triangle, c
     return uv;
 }
 
-/// Object-space normals and tangents to world space (up to length). Copies nothing where the mesh is in world space already.
+/// Object-space normals and tangents to world space (up to length). Copies nothing where the mesh is in world
+/// space already.
 class NormalMapper {
   public:
     explicit NormalMapper(const Instance& instance) : instance_(instance) {}
@@ -37,7 +39,9 @@ class NormalMapper {
     [[nodiscard]] Vec3 normal(Vec3 n) const {
         return instance_.identity ? n : cofactor(instance_.world_from_object).vector(n) * winding();
     }
-    [[nodiscard]] Vec3 tangent(Vec3 t) const { return instance_.identity ? t : instance_.world_from_object.vector(t); }
+    [[nodiscard]] Vec3 tangent(Vec3 t) const {
+        return instance_.identity ? t : instance_.world_from_object.vector(t);
+    }
     /// The sign of a normal from transformed corners against the one of the mesh's own winding.
     [[nodiscard]] float winding() const {
         return instance_.identity || determinant(instance_.world_from_object) > 0 ? 1.0f : -1.0f;
@@ -65,8 +69,8 @@ Vec3 keep_viewer_above(Vec3 n, Vec3 w_out) {
     return cosine >= min_view_cosine ? n : normalize(n + w_out * (min_view_cosine - cosine));
 }
 
-Vec3 shading_normal(const SceneData& scene, const Mesh& mesh, const Triangle& triangle, const Hit& hit, const NormalMapper& map,
-                    const SurfacePoint& p, Vec3 front_normal) {
+Vec3 shading_normal(const SceneData& scene, const Mesh& mesh, const Triangle& triangle, const Hit& hit,
+                    const NormalMapper& map, const SurfacePoint& p, Vec3 front_normal) {
     Vec3 n = front_normal;
     if (!mesh.normals.empty()) {
         const Vec3 smooth = map.normal(interpolate(mesh.normals, triangle, hit));
@@ -76,7 +80,8 @@ Vec3 shading_normal(const SceneData& scene, const Mesh& mesh, const Triangle& tr
         Vec4 tangent = mesh.tangents[triangle.vertex[0]];
         const float handedness = tangent.w * map.winding();
         const auto& [a, b, c] = triangle.vertex;
-        const Vec3 along = xyz(mesh.tangents[a]) * (1 - hit.u - hit.v) + xyz(mesh.tangents[b]) * hit.u + xyz(mesh.tangents[c]) * hit.v;
+        const Vec3 along = xyz(mesh.tangents[a]) * (1 - hit.u - hit.v) + xyz(mesh.tangents[b]) * hit.u
+                           + xyz(mesh.tangents[c]) * hit.v;
         const Vec3 world = map.tangent(along);
         tangent = {world.x, world.y, world.z, handedness};
         const Vec3 mapped = mapped_normal(scene, p, n, tangent);
@@ -87,7 +92,8 @@ Vec3 shading_normal(const SceneData& scene, const Mesh& mesh, const Triangle& tr
 
 }  // namespace
 
-std::array<Vec3, 3> world_triangle(const SceneData& scene, std::uint32_t instance_index, std::uint32_t triangle_index) {
+std::array<Vec3, 3> world_triangle(const SceneData& scene, std::uint32_t instance_index,
+                                   std::uint32_t triangle_index) {
     const Instance& instance = scene.instances[instance_index];
     const Mesh& mesh = scene.meshes[index(instance.mesh)];
     const auto& [a, b, c] = mesh.triangles[triangle_index].vertex;
@@ -99,7 +105,8 @@ std::array<Vec3, 3> world_triangle(const SceneData& scene, std::uint32_t instanc
 
 float rounding_offset(const std::array<Vec3, 3>& corners) {
     constexpr float units_in_last_place = 32;
-    return units_in_last_place * 0x1p-24f * std::max({max_abs(corners[0]), max_abs(corners[1]), max_abs(corners[2])});
+    return units_in_last_place * 0x1p-24f
+           * std::max({max_abs(corners[0]), max_abs(corners[1]), max_abs(corners[2])});
 }
 
 TextureCoordinates texture_coordinates(const Mesh& mesh, const Hit& hit) {
@@ -107,7 +114,8 @@ TextureCoordinates texture_coordinates(const Mesh& mesh, const Hit& hit) {
     TextureCoordinates coordinates{interpolate_uv(mesh, triangle, hit)};
     if (!mesh.colors.empty()) {
         const auto& [a, b, c] = triangle.vertex;
-        coordinates.vertex_alpha = mesh.colors[a][3] * (1 - hit.u - hit.v) + mesh.colors[b][3] * hit.u + mesh.colors[c][3] * hit.v;
+        coordinates.vertex_alpha =
+            mesh.colors[a][3] * (1 - hit.u - hit.v) + mesh.colors[b][3] * hit.u + mesh.colors[c][3] * hit.v;
     }
     return coordinates;
 }
@@ -134,7 +142,8 @@ SurfacePoint surface_point(const SceneData& scene, const Hit& hit, WorldDir w_ou
         };
         p.vertex_color = color(0) * (1 - hit.u - hit.v) + color(1) * hit.u + color(2) * hit.v;
     }
-    const Vec3 front_normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0])) * map.winding();
+    const Vec3 front_normal =
+        normalize(cross(corners[1] - corners[0], corners[2] - corners[0])) * map.winding();
     p.front = dot(front_normal, w_out.v) >= 0;
     p.geometric_normal = p.front ? front_normal : -front_normal;
     Vec3 n = shading_normal(scene, mesh, triangle, hit, map, p, front_normal);

@@ -22,16 +22,21 @@ int wrap_texel(int i, int size, Wrap wrap) {
 }
 
 Vec4 texel(const ByteImage& image, int x, int y, Encoding encoding) {
-    const std::size_t at = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+    const std::size_t at =
+        4
+        * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
     if (!image.rgba8.empty()) {
         const std::uint8_t* p = &image.rgba8[at];
         const float a = static_cast<float>(p[3]) / 255;
         if (encoding == Encoding::srgb) return {srgb_table[p[0]], srgb_table[p[1]], srgb_table[p[2]], a};
-        return {static_cast<float>(p[0]) / 255, static_cast<float>(p[1]) / 255, static_cast<float>(p[2]) / 255, a};
+        return {static_cast<float>(p[0]) / 255, static_cast<float>(p[1]) / 255,
+                static_cast<float>(p[2]) / 255, a};
     }
     const std::uint16_t* p = &image.rgba16[at];
     const auto unit = [](std::uint16_t v) { return static_cast<float>(v) / 65535; };
-    const auto decode = [&](std::uint16_t v) { return encoding == Encoding::srgb ? srgb_to_linear(unit(v)) : unit(v); };
+    const auto decode = [&](std::uint16_t v) {
+        return encoding == Encoding::srgb ? srgb_to_linear(unit(v)) : unit(v);
+    };
     return {decode(p[0]), decode(p[1]), decode(p[2]), unit(p[3])};
 }
 
@@ -39,25 +44,31 @@ Vec4 mix_texels(Vec4 a, Vec4 b, float t) {
     return {lerp(a.x, b.x, t), lerp(a.y, b.y, t), lerp(a.z, b.z, t), lerp(a.w, b.w, t)};
 }
 
-/// Into the range where float texel arithmetic is exact enough; coordinates beyond have no meaningful fraction anyway.
-float tame(float coordinate) { return std::isfinite(coordinate) ? std::clamp(coordinate, -1e4f, 1e4f) : 0.0f; }
+/// Into the range where float texel arithmetic is exact enough; coordinates beyond have no meaningful
+/// fraction anyway.
+float tame(float coordinate) {
+    return std::isfinite(coordinate) ? std::clamp(coordinate, -1e4f, 1e4f) : 0.0f;
+}
 
 }  // namespace
 
-Vec4 sample_texture(const SceneData& scene, const TextureRef& texture, const std::array<Vec2, 2>& uv, Encoding encoding) {
+Vec4 sample_texture(const SceneData& scene, const TextureRef& texture, const std::array<Vec2, 2>& uv,
+                    Encoding encoding) {
     const ByteImage& image = scene.images[index(texture.image)];
     const Vec2 p = uv[static_cast<std::size_t>(texture.uv_set)];
     const auto& m = texture.uv_transform;
     const float x = tame(m[0] * p.x + m[1] * p.y + m[2]) * static_cast<float>(image.width);
     const float y = tame(m[3] * p.x + m[4] * p.y + m[5]) * static_cast<float>(image.height);
     const auto at = [&](int i, int j) {
-        return texel(image, wrap_texel(i, image.width, texture.wrap_u), wrap_texel(j, image.height, texture.wrap_v), encoding);
+        return texel(image, wrap_texel(i, image.width, texture.wrap_u),
+                     wrap_texel(j, image.height, texture.wrap_v), encoding);
     };
     if (texture.nearest) return at(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
     const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
     const int i = static_cast<int>(left), j = static_cast<int>(top);
     const float s = x - 0.5f - left, t = y - 0.5f - top;
-    return mix_texels(mix_texels(at(i, j), at(i + 1, j), s), mix_texels(at(i, j + 1), at(i + 1, j + 1), s), t);
+    return mix_texels(mix_texels(at(i, j), at(i + 1, j), s), mix_texels(at(i, j + 1), at(i + 1, j + 1), s),
+                      t);
 }
 
 }  // namespace relumine

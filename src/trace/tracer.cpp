@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tracer on Embree: one geometry per instance at the top, meshes with several instances in scenes of their own.
+// The tracer on Embree: one geometry per instance at the top, meshes with several instances in scenes of
+// their own.
 #include "trace/tracer.hpp"
 
 #if __has_include(<embree4/rtcore.h>)
@@ -32,15 +33,17 @@ using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 using Geometry = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
 
-/// The builder cuts its work by the number of task slots, and the tree's shape decides between hits at exactly equal distances:
-/// a constant makes the tree the same on every machine, whatever the number of threads that really work.
+/// The builder cuts its work by the number of task slots, and the tree's shape decides between hits at
+/// exactly equal distances: a constant makes the tree the same on every machine, whatever the number of
+/// threads that really work.
 constexpr std::size_t build_slots = 8;
 constexpr const char* device_options = "threads=8,start_threads=0,set_affinity=0";
 
 void throw_on_error(RTCDevice device, const char* doing) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE) return;
-    if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error{fmt::format("ray tracing: not enough memory while {}", doing)};
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        throw Error{fmt::format("ray tracing: not enough memory while {}", doing)};
     throw Error{fmt::format("ray tracing: Embree error {} while {}", static_cast<int>(error), doing)};
 }
 
@@ -71,8 +74,9 @@ void occluded1(RTCScene scene, RTCRay* query) {
 void intersect16(RTCScene scene, const int* valid, RTCRayHit16* query, Coherence coherence) {
     QueryContext context;
     init_context(&context);
-    RTCIntersectArguments arguments = intersect_arguments(
-        &context, coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT);
+    RTCIntersectArguments arguments =
+        intersect_arguments(&context, coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT
+                                                                       : RTC_RAY_QUERY_FLAG_INCOHERENT);
     rtcIntersect16(valid, scene, query, &arguments);
 }
 void occluded16(RTCScene scene, const int* valid, RTCRay16* query) {
@@ -152,10 +156,10 @@ std::uint32_t instance_of(unsigned geometry, unsigned instance) {
 
 Geometry triangle_geometry(RTCDevice device, const Mesh& mesh) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, sizeof(Vec3),
-                               mesh.positions.size());
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
-                               sizeof(Triangle), mesh.triangles.size());
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               mesh.positions.data(), 0, sizeof(Vec3), mesh.positions.size());
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
     return geometry;
 }
 
@@ -215,7 +219,8 @@ struct Tracer::Impl {
         rtcSetGeometryInstancedScene(geometry.get(), instanced_scene(instance.mesh));
         std::array<float, 12> rows{};
         for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t j = 0; j < 4; ++j) rows[4 * i + j] = static_cast<float>(instance.world_from_object.m[i][j]);
+            for (std::size_t j = 0; j < 4; ++j)
+                rows[4 * i + j] = static_cast<float>(instance.world_from_object.m[i][j]);
         rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows.data());
         rtcCommitGeometry(geometry.get());
         return geometry;
@@ -226,8 +231,9 @@ struct Tracer::Impl {
         mesh_scenes.resize(scene_data.meshes.size());
         for (std::uint32_t i = 0; i < scene_data.instances.size(); ++i) {
             const Instance& instance = scene_data.instances[i];
-            const Geometry geometry = instance.identity ? mesh_geometry(scene_data.meshes[index(instance.mesh)], i)
-                                                        : instance_geometry(instance);
+            const Geometry geometry = instance.identity
+                                          ? mesh_geometry(scene_data.meshes[index(instance.mesh)], i)
+                                          : instance_geometry(instance);
             rtcAttachGeometryByID(top.get(), geometry.get(), i);
         }
         rtcCommitScene(top.get());
@@ -243,15 +249,18 @@ struct Tracer::Impl {
             hit.u = RTCHitN_u(args->hit, args->N, lane);
             hit.v = RTCHitN_v(args->hit, args->N, lane);
             hit.triangle = RTCHitN_primID(args->hit, args->N, lane);
-            hit.instance = filter.instance != no_instance ? filter.instance : RTCHitN_instID(args->hit, args->N, lane, 0);
+            hit.instance = filter.instance != no_instance ? filter.instance
+                                                          : RTCHitN_instID(args->hit, args->N, lane, 0);
             const std::uint64_t surface = std::uint64_t{hit.instance} << 32 | hit.triangle;
-            const auto random = static_cast<std::uint32_t>(hash(surface, RTCRayN_id(args->ray, args->N, lane)));
+            const auto random =
+                static_cast<std::uint32_t>(hash(surface, RTCRayN_id(args->ray, args->N, lane)));
             if (unit_float(random) >= filter.tracer->opacity(hit)) args->valid[lane] = 0;
         }
     }
 };
 
-Tracer::Tracer(const SceneData& scene, OpacityFunction opacity) : impl_(std::make_unique<Impl>(scene, std::move(opacity))) {
+Tracer::Tracer(const SceneData& scene, OpacityFunction opacity)
+    : impl_(std::make_unique<Impl>(scene, std::move(opacity))) {
     const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, build_slots + 1);
     impl_->build();
 }
@@ -265,7 +274,8 @@ Hit Tracer::closest_hit(const Ray& ray) const {
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     intersect1(impl_->top.get(), &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    return {query.ray.tfar, query.hit.u, query.hit.v, instance_of(query.hit.geomID, query.hit.instID[0]), query.hit.primID};
+    return {query.ray.tfar, query.hit.u, query.hit.v, instance_of(query.hit.geomID, query.hit.instID[0]),
+            query.hit.primID};
 }
 
 bool Tracer::occluded(const Ray& ray) const {
@@ -275,7 +285,8 @@ bool Tracer::occluded(const Ray& ray) const {
     return query.tfar < 0;
 }
 
-void Tracer::closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits, Coherence coherence) const {
+void Tracer::closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits,
+                          Coherence coherence) const {
     alignas(64) RTCRayHit16 query;
     alignas(64) const PacketMask valid = set_rays(query.ray, rays);
     std::ranges::fill(query.hit.geomID, RTC_INVALID_GEOMETRY_ID);

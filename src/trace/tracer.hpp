@@ -16,7 +16,7 @@ namespace relumine {
 struct Ray {
     Vec3 origin;
     WorldDir direction;
-    float t_max = infinity;       // in units of the (unit) direction
+    float t_max = infinity;          // in units of the (unit) direction
     std::uint32_t opacity_seed = 0;  // decides which partly transparent surfaces this ray sees
 };
 
@@ -39,13 +39,16 @@ enum class Coherence { coherent, incoherent };
 /// The opacity in [0, 1] of a point on a triangle (fields t unset).
 using OpacityFunction = std::function<float(const Hit&)>;
 
-/// The acceleration structure over a scene. Immutable; any number of threads may trace at a time, with denormals flushed.
+/// The acceleration structure over a scene. Immutable; any number of threads may trace at a time, with
+/// denormals flushed.
 ///
-/// Surfaces that are not opaque are met with a probability of their opacity, decided by a hash of the ray's opacity_seed and
-/// the triangle, so that neither the order of traversal nor the thread can change the answer.
+/// Surfaces that are not opaque are met with a probability of their opacity, decided by a hash of the ray's
+/// opacity_seed and the triangle, so that neither the order of traversal nor the thread can change the
+/// answer.
 class Tracer {
   public:
-    /// Builds over `scene`, which must outlive the tracer. `opacity` is asked for materials whose alpha mode is not opaque.
+    /// Builds over `scene`, which must outlive the tracer. `opacity` is asked for materials whose alpha mode
+    /// is not opaque.
     Tracer(const SceneData& scene, OpacityFunction opacity);
     ~Tracer();
     Tracer(const Tracer&) = delete;
@@ -54,9 +57,11 @@ class Tracer {
     [[nodiscard]] Hit closest_hit(const Ray& ray) const;
     [[nodiscard]] bool occluded(const Ray& ray) const;
 
-    /// Sixteen rays at once. Rays with t_max < 0 are left out. A lane's last digits may depend on its neighbours, so a packet must
-    /// always be traced with the same sixteen rays. Lanes that are left out have no hit and are not occluded.
-    void closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits, Coherence coherence) const;
+    /// Sixteen rays at once. Rays with t_max < 0 are left out. A lane's last digits may depend on its
+    /// neighbours, so a packet must always be traced with the same sixteen rays. Lanes that are left out have
+    /// no hit and are not occluded.
+    void closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits,
+                      Coherence coherence) const;
     void occluded(std::span<const Ray, packet_size> rays, std::span<bool, packet_size> blocked) const;
 
   private:
