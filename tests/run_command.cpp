@@ -109,6 +109,14 @@ int exit_code_of(pid_t child) {
 
 }  // namespace
 
+bool terminals_available() {
+    int controller = -1, terminal = -1;
+    if (openpty(&controller, &terminal, nullptr, nullptr, nullptr) != 0) return false;
+    close(controller);
+    close(terminal);
+    return true;
+}
+
 CommandResult run_relumine(const std::vector<std::string>& arguments, const RunOptions& options) {
     Channel out = make_pipe();
     Channel err = options.terminal ? make_terminal() : make_pipe();

@@ -48,4 +48,7 @@ class ScratchFolder {
 void write_bytes(const std::string& path, const std::string& bytes);
 [[nodiscard]] std::string read_bytes(const std::string& path);
 
+/// Whether this machine gives out pseudo-terminals; a bare chroot without /dev/pts does not.
+[[nodiscard]] bool terminals_available();
+
 }  // namespace relumine::test
