@@ -8,6 +8,7 @@
 #include "base/executor.hpp"
 #include "base/frame.hpp"
 #include "base/hash.hpp"
+#include "base/sample_packet_kernel.hpp"
 
 namespace {
 
@@ -23,6 +24,29 @@ void random_number(benchmark::State& state) {
     }
 }
 BENCHMARK(random_number);
+
+// A point from a Sobol sequence for each of sixteen pixels: stream by stream, or all at once in SIMD lanes.
+void sobol_points(benchmark::State& state) {
+    using namespace relumine;
+    std::array<SampleStream, packet_size> streams;
+    for (std::uint32_t i = 0; i < packet_size; ++i) streams[i] = {hash(1, i), 5, 64, PointSet::sobol};
+    const SamplePacket packet(streams);
+    SamplePacket::Lanes<float> x{}, y{};
+    std::uint32_t vertex = 0;
+    for (auto _ : state) {
+        ++vertex;
+        if (state.range(0) == 1) packet.next2(Dim::direction, vertex, x, y);
+        for (std::size_t i = 0; state.range(0) == 0 && i < packet_size; ++i) {
+            const Point2 u = streams[i].next2(Dim::direction, vertex);
+            x[i] = u.x;
+            y[i] = u.y;
+        }
+        benchmark::DoNotOptimize(x);
+        benchmark::DoNotOptimize(y);
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(packet_size));
+}
+BENCHMARK(sobol_points)->ArgName("packet")->Arg(0)->Arg(1);
 
 void frame_around_normal(benchmark::State& state) {
     Vec3 normal{0, 0, 1};

@@ -28,6 +28,11 @@ enum class PointSet : std::uint8_t {
     independent,  // no stratification
 };
 
+/// What tells the dimensions of a stream apart; `vertex` counts the scattering vertices of the path.
+constexpr std::uint64_t dimension_bits(Dim dim, std::uint32_t vertex) {
+    return (16 * std::uint64_t{vertex} + static_cast<std::uint32_t>(dim)) * 0x9e3779b97f4a7c15u;
+}
+
 /// One sample's random numbers: element `index` of a point set of `count` elements that `key` scrambles.
 struct SampleStream {
     std::uint64_t key = 0;
@@ -35,7 +40,7 @@ struct SampleStream {
     std::uint32_t count = 1;  // of elements that belong together; matters for `stratified` alone
     PointSet set = PointSet::sobol;
 
-    /// In [0, 1); `vertex` counts the scattering vertices of the path.
+    /// In [0, 1).
     [[nodiscard]] float next1(Dim dim, std::uint32_t vertex = 0) const;
     /// In [0, 1)².
     [[nodiscard]] Point2 next2(Dim dim, std::uint32_t vertex = 0) const;
@@ -46,8 +51,7 @@ struct SampleStream {
 
   private:
     [[nodiscard]] std::uint64_t dimension_key(Dim dim, std::uint32_t vertex) const {
-        const std::uint64_t dimension = 16 * std::uint64_t{vertex} + static_cast<std::uint32_t>(dim);
-        return mix(key ^ (dimension * 0x9e3779b97f4a7c15u));
+        return mix(key ^ dimension_bits(dim, vertex));
     }
 };
 

@@ -2,6 +2,7 @@
 // Camera samples in packets.
 #include "integrators/view.hpp"
 
+#include "base/sample_packet_kernel.hpp"
 #include "shading/material.hpp"
 
 namespace relumine {
@@ -9,23 +10,29 @@ namespace {
 
 constexpr int block = 4;  // pixels along each side; block² = packet_size
 
-CameraSample camera_sample(const View& view, int x, int y, std::uint32_t sample) {
-    CameraSample s{x, y, pixel_stream(view.seed, x, y, sample, view.samples_per_pixel, view.point_set), {}};
-    const Point2 in_pixel = view.filter.position(s.stream.next2(Dim::pixel));
-    s.path.ray =
-        view.camera.through({static_cast<float>(x) + in_pixel.x, static_cast<float>(y) + in_pixel.y});
-    s.path.ray.opacity_seed = s.stream.bits(Dim::opacity, 0);
-    return s;
-}
-
 CameraPacket trace_block(const View& view, const Tracer& tracer, int x0, int y0, std::uint32_t sample) {
     CameraPacket samples;
-    std::array<Ray, packet_size> rays;
-    std::array<Hit, packet_size> hits;
+    StreamPacket streams;
     for (int lane = 0; lane < block * block; ++lane) {
         const auto i = static_cast<std::size_t>(lane);
-        samples[i] = camera_sample(view, x0 + lane % block, y0 + lane / block, sample);
-        rays[i] = samples[i].path.ray;
+        samples[i].x = x0 + lane % block;
+        samples[i].y = y0 + lane / block;
+        streams[i] = samples[i].stream = pixel_stream(view.seed, samples[i].x, samples[i].y, sample,
+                                                      view.samples_per_pixel, view.point_set);
+    }
+    SamplePacket::Lanes<float> x, y;
+    SamplePacket::Lanes<std::uint32_t> opacity{};
+    const SamplePacket numbers(streams);
+    numbers.next2(Dim::pixel, 0, x, y);
+    if (tracer.asks_for_opacity()) numbers.bits(Dim::opacity, 0, opacity);
+    std::array<Ray, packet_size> rays;
+    std::array<Hit, packet_size> hits;
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        const Point2 in_pixel = view.filter.position({x[i], y[i]});
+        rays[i] = view.camera.through(
+            {static_cast<float>(samples[i].x) + in_pixel.x, static_cast<float>(samples[i].y) + in_pixel.y});
+        rays[i].opacity_seed = opacity[i];
+        samples[i].path.ray = rays[i];
     }
     tracer.closest_hits(rays, hits, Coherence::coherent);
     for (std::size_t i = 0; i < packet_size; ++i) samples[i].path.hit = hits[i];

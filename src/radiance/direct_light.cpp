@@ -28,17 +28,15 @@ Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
 }
 
 std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex,
-                                                  const SampleStream& stream, std::uint32_t depth) {
-    const auto light = t.lights.sample(vertex.point.position, stream.next1(Dim::light_choice, depth),
-                                       stream.next2(Dim::light_point, depth));
+                                                  const LightRandom& u) {
+    const auto light = t.lights.sample(vertex.point.position, u.choice, u.point);
     if (!light) return {};
     const Spectrum reflected = unshadowed(vertex, *light);
     if (is_black(reflected)) return {};
     const float weight = light->delta ? 1
                                       : mis_weight(light->pdf, pdf(vertex.bsdf, vertex.w_out,
                                                                    vertex.point.frame.to_local(light->w_in)));
-    return LightProposal{shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1)),
-                         reflected * (weight / light->pdf)};
+    return LightProposal{shadow_ray(vertex.point, *light, u.opacity_seed), reflected * (weight / light->pdf)};
 }
 
 Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed, RayCounts& rays) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "base/ray_counts.hpp"
-#include "base/sample_stream.hpp"
 #include "radiance/transport.hpp"
 
 namespace relumine {
@@ -25,11 +24,17 @@ struct LightProposal {
     Spectrum reflected;
 };
 
+/// What drawing a light takes.
+struct LightRandom {
+    float choice;                // in [0, 1)
+    Point2 point;                // in [0, 1)²
+    std::uint32_t opacity_seed;  // of the shadow ray
+};
+
 /// One sample of the direct light reflected at `vertex`, weighted against BSDF sampling by the power
 /// heuristic, before its shadow ray is traced. Empty where nothing would be reflected.
 [[nodiscard]] std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex,
-                                                                const SampleStream& stream,
-                                                                std::uint32_t depth);
+                                                                const LightRandom& u);
 
 /// The reflected light of all point, spot and directional lights, a shadow ray each.
 [[nodiscard]] Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed,

@@ -2,6 +2,7 @@
 // Following paths.
 #include "radiance/path.hpp"
 
+#include "base/sample_packet_kernel.hpp"
 #include "radiance/direct_light.hpp"
 #include "shading/material.hpp"
 #include "shading/sampling.hpp"
@@ -20,14 +21,54 @@ void add(SplitRadiance& sum, std::uint32_t scatterings, Spectrum radiance) {
 }
 
 /// Ends paths by their throughput, or makes up for those that were ended.
-bool survives(PathState& path, const SampleStream& stream) {
+bool survives(PathState& path, float u) {
     if (path.depth <= roulette_depth) return true;
-    const float u = stream.next1(Dim::roulette, path.depth);
     const float survival = std::min(max_component(path.throughput) * path.eta_scale,
                                     path.depth < lossless_depth ? 1.0f : max_survival);
     if (!(u < survival)) return false;
     path.throughput *= 1 / survival;
     return true;
+}
+
+/// What one step of a packet of paths draws, except what few materials ask for.
+struct StepNumbers {
+    SamplePacket::Lanes<float> light_choice, light_x, light_y, lobe, direction_x, direction_y, roulette;
+    SamplePacket::Lanes<std::uint32_t> shadow_opacity{}, bounce_opacity{};
+
+    StepNumbers(const SamplePacket& samples, std::uint32_t depth, bool opacity) {
+        samples.next1(Dim::light_choice, depth, light_choice);
+        samples.next2(Dim::light_point, depth, light_x, light_y);
+        samples.next1(Dim::lobe, depth, lobe);
+        samples.next2(Dim::direction, depth, direction_x, direction_y);
+        if (depth + 1 > roulette_depth) samples.next1(Dim::roulette, depth + 1, roulette);
+        if (!opacity) return;
+        samples.bits(Dim::opacity, 2 * depth + 1, shadow_opacity);
+        samples.bits(Dim::opacity, 2 * depth + 2, bounce_opacity);
+    }
+
+    [[nodiscard]] LightRandom light(std::size_t lane) const {
+        return {light_choice[lane], {light_x[lane], light_y[lane]}, shadow_opacity[lane]};
+    }
+    [[nodiscard]] BsdfRandom bsdf(std::size_t lane) const {
+        return {lobe[lane], {direction_x[lane], direction_y[lane]}};
+    }
+};
+
+/// Scatters the path by the given numbers: see scatter_path.
+void scatter(PathState& path, const Vertex& vertex, BsdfRandom u, std::uint32_t opacity_seed) {
+    path.alive = false;
+    const auto scattered = sample(vertex.bsdf, vertex.w_out, u);
+    if (!scattered || is_black(scattered->weight)) return;
+    const WorldDir w_in = vertex.point.frame.to_world(scattered->w_in);
+    if (!sides_agree(vertex.point, w_in)) return;
+    path.alive = true;
+    path.throughput *= scattered->weight;
+    path.eta_scale *= sqr(scattered->eta);
+    path.bsdf_pdf = scattered->delta ? 0 : scattered->pdf;
+    path.scatterings += scattered->delta ? 0 : 1;
+    ++path.depth;
+    path.count_emission = true;
+    path.ray = {ray_origin(vertex.point, w_in), w_in, infinity, opacity_seed};
 }
 
 /// The light proposals of one step of a packet of paths.
@@ -43,7 +84,7 @@ struct ShadowPacket {
 
 /// One step of a path at its hit: counts emission, proposes direct light, scatters.
 void advance(const Transport& t, PathState& path, std::uint32_t max_depth, const SampleStream& stream,
-             SplitRadiance& sum, ShadowPacket& shadows, std::size_t lane) {
+             const StepNumbers& numbers, SplitRadiance& sum, ShadowPacket& shadows, std::size_t lane) {
     if (!path.hit) {
         if (path.count_emission)
             add(sum, path.scatterings, path.throughput * arriving_emission(t, path, nullptr));
@@ -56,14 +97,14 @@ void advance(const Transport& t, PathState& path, std::uint32_t max_depth, const
     path.alive = path.depth < max_depth;
     if (!path.alive) return;
     if (!is_delta(vertex.bsdf)) {
-        if (const auto light = propose_direct_light(t, vertex, stream, path.depth)) {
+        if (const auto light = propose_direct_light(t, vertex, numbers.light(lane))) {
             shadows.rays[lane] = light->shadow_ray;
             shadows.radiance[lane] = path.throughput * light->reflected;
             shadows.scatterings[lane] = path.scatterings + 1;
         }
     }
-    scatter_path(path, vertex, stream);
-    path.alive = path.alive && survives(path, stream);
+    scatter(path, vertex, numbers.bsdf(lane), numbers.bounce_opacity[lane]);
+    path.alive = path.alive && survives(path, numbers.roulette[lane]);
 }
 
 std::size_t count_active(const std::array<Ray, packet_size>& rays) {
@@ -116,21 +157,9 @@ Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stre
 }
 
 void scatter_path(PathState& path, const Vertex& vertex, const SampleStream& stream) {
-    path.alive = false;
     const BsdfRandom u{has_lobes(vertex.bsdf) ? stream.next1(Dim::lobe, path.depth) : 0.0f,
                        stream.next2(Dim::direction, path.depth)};
-    const auto scattered = sample(vertex.bsdf, vertex.w_out, u);
-    if (!scattered || is_black(scattered->weight)) return;
-    const WorldDir w_in = vertex.point.frame.to_world(scattered->w_in);
-    if (!sides_agree(vertex.point, w_in)) return;
-    path.alive = true;
-    path.throughput *= scattered->weight;
-    path.eta_scale *= sqr(scattered->eta);
-    path.bsdf_pdf = scattered->delta ? 0 : scattered->pdf;
-    path.scatterings += scattered->delta ? 0 : 1;
-    ++path.depth;
-    path.count_emission = true;
-    path.ray = {ray_origin(vertex.point, w_in), w_in, infinity, stream.bits(Dim::opacity, 2 * path.depth)};
+    scatter(path, vertex, u, stream.bits(Dim::opacity, 2 * path.depth + 2));
 }
 
 Spectrum arriving_emission(const Transport& t, const PathState& path, const SurfacePoint* hit_point) {
@@ -145,10 +174,14 @@ Spectrum arriving_emission(const Transport& t, const PathState& path, const Surf
 RadiancePacket path_radiance(const Transport& t, PathPacket paths, std::uint32_t max_depth,
                              const StreamPacket& streams, RayCounts& rays) {
     RadiancePacket sums;
-    while (std::ranges::any_of(paths, &PathState::alive)) {
+    const SamplePacket samples(streams);
+    for (;;) {
+        const auto leader = std::ranges::find_if(paths, &PathState::alive);
+        if (leader == paths.end()) break;
+        const StepNumbers numbers(samples, leader->depth, t.tracer.asks_for_opacity());
         ShadowPacket shadows;
         for (std::size_t i = 0; i < packet_size; ++i)
-            if (paths[i].alive) advance(t, paths[i], max_depth, streams[i], sums[i], shadows, i);
+            if (paths[i].alive) advance(t, paths[i], max_depth, streams[i], numbers, sums[i], shadows, i);
         add_unshadowed(t, shadows, sums, rays);
         trace_bounces(t, paths, rays);
     }

@@ -32,8 +32,8 @@ using RadiancePacket = std::array<SplitRadiance, packet_size>;
 
 /// Radiance along each living path's ray from its hit on: next-event estimation with MIS, BSDF sampling,
 /// Russian roulette from the fifth vertex on. Unbiased for paths of up to `max_depth` scattering vertices in
-/// all. The paths are followed in step, so that their rays are traced as packets; the same sixteen paths must
-/// always go together.
+/// all. The paths are followed in step, so that their rays are traced and their random numbers drawn as
+/// packets: the same sixteen paths must always go together, and all that live be of the same depth.
 [[nodiscard]] RadiancePacket path_radiance(const Transport& t, PathPacket paths, std::uint32_t max_depth,
                                            const StreamPacket& streams, RayCounts& rays);
 

@@ -267,6 +267,8 @@ Tracer::Tracer(const SceneData& scene, OpacityFunction opacity)
 
 Tracer::~Tracer() = default;
 
+bool Tracer::asks_for_opacity() const { return !impl_->filters.empty(); }
+
 Hit Tracer::closest_hit(const Ray& ray) const {
     RTCRayHit query;
     set_ray(query.ray, ray);

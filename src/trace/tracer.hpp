@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/frame.hpp"
+#include "base/packet.hpp"
 #include "scene/scene_data.hpp"
 
 namespace relumine {
@@ -31,8 +32,6 @@ struct Hit {
     explicit operator bool() const { return instance != no_instance; }
 };
 
-inline constexpr std::size_t packet_size = 16;
-
 /// Whether the rays of a packet start and point nearly alike, as camera rays do: a hint for speed.
 enum class Coherence { coherent, incoherent };
 
@@ -53,6 +52,9 @@ class Tracer {
     ~Tracer();
     Tracer(const Tracer&) = delete;
     Tracer& operator=(const Tracer&) = delete;
+
+    /// Whether there is anything that is not opaque: if not, Ray::opacity_seed does not matter.
+    [[nodiscard]] bool asks_for_opacity() const;
 
     [[nodiscard]] Hit closest_hit(const Ray& ray) const;
     [[nodiscard]] bool occluded(const Ray& ray) const;
