@@ -29,7 +29,7 @@ Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
 
 std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex,
                                                   const LightRandom& u) {
-    const auto light = t.lights.sample(vertex.point.position, u.choice, u.point);
+    const auto light = t.lights.sample(vertex.point.position, u.point);
     if (!light) return {};
     const Spectrum reflected = unshadowed(vertex, *light);
     if (is_black(reflected)) return {};

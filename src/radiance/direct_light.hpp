@@ -26,7 +26,6 @@ struct LightProposal {
 
 /// What drawing a light takes.
 struct LightRandom {
-    float choice;                // in [0, 1)
     Point2 point;                // in [0, 1)²
     std::uint32_t opacity_seed;  // of the shadow ray
 };

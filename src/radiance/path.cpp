@@ -32,11 +32,10 @@ bool survives(PathState& path, float u) {
 
 /// What one step of a packet of paths draws, except what few materials ask for.
 struct StepNumbers {
-    SamplePacket::Lanes<float> light_choice, light_x, light_y, lobe, direction_x, direction_y, roulette;
+    SamplePacket::Lanes<float> light_x, light_y, lobe, direction_x, direction_y, roulette;
     SamplePacket::Lanes<std::uint32_t> shadow_opacity{}, bounce_opacity{};
 
     StepNumbers(const SamplePacket& samples, std::uint32_t depth, bool opacity) {
-        samples.next1(Dim::light_choice, depth, light_choice);
         samples.next2(Dim::light_point, depth, light_x, light_y);
         samples.next1(Dim::lobe, depth, lobe);
         samples.next2(Dim::direction, depth, direction_x, direction_y);
@@ -47,7 +46,7 @@ struct StepNumbers {
     }
 
     [[nodiscard]] LightRandom light(std::size_t lane) const {
-        return {light_choice[lane], {light_x[lane], light_y[lane]}, shadow_opacity[lane]};
+        return {{light_x[lane], light_y[lane]}, shadow_opacity[lane]};
     }
     [[nodiscard]] BsdfRandom bsdf(std::size_t lane) const {
         return {lobe[lane], {direction_x[lane], direction_y[lane]}};

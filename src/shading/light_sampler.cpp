@@ -46,6 +46,11 @@ std::vector<float> normalised_cdf(const std::vector<double>& powers) {
     return cdf;
 }
 
+/// Where in [0, 1) `u` lies of the interval that begins at `first`.
+float rescale(float u, float first, float width) {
+    return std::clamp((u - first) / width, 0.0f, 0x1.fffffep-1f);
+}
+
 }  // namespace
 
 LightSampler::~LightSampler() = default;
@@ -152,9 +157,12 @@ std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle&
                        density};
 }
 
-std::optional<LightSample> LightSampler::sample_local(Vec3 from, float u_choice, Point2 u) const {
-    const auto above = std::upper_bound(local_cdf_.begin() + 1, local_cdf_.end() - 1, u_choice);
-    const auto chosen = static_cast<std::size_t>(above - local_cdf_.begin()) - 1;
+std::size_t LightSampler::choose_local(float u) const {
+    const auto above = std::upper_bound(local_cdf_.begin() + 1, local_cdf_.end() - 1, u);
+    return static_cast<std::size_t>(above - local_cdf_.begin()) - 1;
+}
+
+std::optional<LightSample> LightSampler::sample_local(std::size_t chosen, Vec3 from, Point2 u) const {
     const LocalLight& light = local_[chosen];
     if (light.kind == Kind::triangle) return sample_triangle(triangles_[light.index], from, u);
     const float probability = local_probability_ * (local_cdf_[chosen + 1] - local_cdf_[chosen]);
@@ -166,19 +174,31 @@ std::optional<LightSample> LightSampler::sample_local(Vec3 from, float u_choice,
     return sample;
 }
 
+std::optional<LightSample> LightSampler::sample_environment(Point2 u) const {
+    const EnvironmentSample drawn = environment_->sample(u);
+    if (!(drawn.pdf > 0)) return {};
+    return LightSample{drawn.direction,
+                       {},
+                       infinity,
+                       environment_->radiance(drawn.direction),
+                       environment_probability_ * drawn.pdf};
+}
+
 std::optional<LightSample> LightSampler::sample(Vec3 from, float u_choice, Point2 u) const {
-    if (u_choice < environment_probability_) {
-        const EnvironmentSample drawn = environment_->sample(u);
-        if (!(drawn.pdf > 0)) return {};
-        return LightSample{drawn.direction,
-                           {},
-                           infinity,
-                           environment_->radiance(drawn.direction),
-                           environment_probability_ * drawn.pdf};
-    }
+    if (u_choice < environment_probability_) return sample_environment(u);
     if (local_probability_ <= 0) return {};
-    return sample_local(
-        from, std::min((u_choice - environment_probability_) / local_probability_, 0x1.fffffep-1f), u);
+    return sample_local(choose_local(rescale(u_choice, environment_probability_, local_probability_)), from,
+                        u);
+}
+
+std::optional<LightSample> LightSampler::sample(Vec3 from, Point2 u) const {
+    if (u.x < environment_probability_)
+        return sample_environment({rescale(u.x, 0, environment_probability_), u.y});
+    if (local_probability_ <= 0) return {};
+    const float choice = rescale(u.x, environment_probability_, local_probability_);
+    const std::size_t chosen = choose_local(choice);
+    const float left = rescale(choice, local_cdf_[chosen], local_cdf_[chosen + 1] - local_cdf_[chosen]);
+    return sample_local(chosen, from, {left, u.y});
 }
 
 float LightSampler::pdf(Vec3 from, const SurfacePoint& hit) const {

@@ -37,6 +37,9 @@ class LightSampler {
     /// A direction towards light from `from`; empty where nothing can be sampled or the sample shines away
     /// from the point.
     [[nodiscard]] std::optional<LightSample> sample(Vec3 from, float u_choice, Point2 u) const;
+    /// The same from two numbers: what choosing leaves of u.x serves again, so that the points on every light
+    /// are as well spread as the numbers are.
+    [[nodiscard]] std::optional<LightSample> sample(Vec3 from, Point2 u) const;
 
     /// Density with which `sample` at `from` would have drawn the emissive surface point `hit` (seen from
     /// `from`).
@@ -70,7 +73,9 @@ class LightSampler {
     void add_delta_lights(std::vector<double>& powers);
     [[nodiscard]] std::optional<LightSample> sample_triangle(const EmissiveTriangle& light, Vec3 from,
                                                              Point2 u) const;
-    [[nodiscard]] std::optional<LightSample> sample_local(Vec3 from, float u_choice, Point2 u) const;
+    [[nodiscard]] std::optional<LightSample> sample_environment(Point2 u) const;
+    [[nodiscard]] std::size_t choose_local(float u) const;  // of local_
+    [[nodiscard]] std::optional<LightSample> sample_local(std::size_t chosen, Vec3 from, Point2 u) const;
     [[nodiscard]] float triangle_density(const EmissiveTriangle& light, Vec3 from, Vec3 on_light) const;
 
     const SceneData& scene_;

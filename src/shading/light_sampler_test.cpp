@@ -40,23 +40,51 @@ Numbers numbers(std::uint32_t i) {
     return {stream.next1(Dim::light_choice), stream.next2(Dim::light_point)};
 }
 
+/// χ² over a 10 × 10 grid on the light, of points that `draw` makes of each pair of numbers.
+template <typename Draw>
+double p_of_grid(const Draw& draw) {
+    constexpr int side = 10;
+    std::vector<double> observed(side * side), expected(side * side, double{draws} / (side * side));
+    for (std::uint32_t i = 0; i < draws; ++i) {
+        const std::optional<LightSample> s = draw(numbers(i));
+        const int x = std::clamp(static_cast<int>((s->target.x + 1) / 2 * side), 0, side - 1);
+        const int z = std::clamp(static_cast<int>((s->target.z + 1) / 2 * side), 0, side - 1);
+        ++observed[static_cast<std::size_t>(z * side + x)];
+    }
+    return testing::chi_square_p(observed, expected);
+}
+
 TEST(LightSampler, PointsAreUniformOverTheLight) {
     const SceneData scene = square_light();
     const LightSampler lights(scene, {});
-    const auto p_of_grid = [&](auto squeeze) {
-        constexpr int side = 10;
-        std::vector<double> observed(side * side), expected(side * side, double{draws} / (side * side));
-        for (std::uint32_t i = 0; i < draws; ++i) {
-            const auto [choice, point] = numbers(i);
-            const auto s = lights.sample({0, 0, 0}, choice, squeeze(point));
-            const int x = std::clamp(static_cast<int>((s->target.x + 1) / 2 * side), 0, side - 1);
-            const int z = std::clamp(static_cast<int>((s->target.z + 1) / 2 * side), 0, side - 1);
-            ++observed[static_cast<std::size_t>(z * side + x)];
-        }
-        return testing::chi_square_p(observed, expected);
+    const auto p = [&](auto squeeze) {
+        return p_of_grid([&](Numbers n) { return lights.sample({0, 0, 0}, n.choice, squeeze(n.point)); });
     };
-    EXPECT_GT(p_of_grid([](Point2 u) { return u; }), 1e-6);
-    EXPECT_LT(p_of_grid([](Point2 u) { return Point2{0.99f * u.x, u.y}; }), 1e-6);  // 1 % of the square left out must be caught
+    EXPECT_GT(p([](Point2 u) { return u; }), 1e-6);
+    EXPECT_LT(p([](Point2 u) { return Point2{0.99f * u.x, u.y}; }), 1e-6);  // 1 % of the square left out must be caught
+}
+
+TEST(LightSampler, PointsAreUniformWhereTwoNumbersDoForThree) {
+    const SceneData scene = square_light();
+    const LightSampler lights(scene, {});
+    const auto p = [&](auto squeeze) {
+        return p_of_grid([&](Numbers n) { return lights.sample({0, 0, 0}, squeeze(n.point)); });
+    };
+    EXPECT_GT(p([](Point2 u) { return u; }), 1e-6);
+    EXPECT_LT(p([](Point2 u) { return Point2{u.x, 0.99f * u.y}; }), 1e-6);
+}
+
+TEST(LightSampler, BothHalvesOfASquareGetTheSameNumberOfSobolPoints) {
+    const SceneData scene = square_light();
+    const LightSampler lights(scene, {});
+    for (std::uint64_t key = 0; key < 16; ++key) {
+        int of_first = 0;
+        for (std::uint32_t i = 0; i < 64; ++i) {
+            const auto s = lights.sample({0, 0, 0}, SampleStream{mix(key), i, 64, PointSet::sobol}.next2(Dim::light_point));
+            of_first += s->target.x > s->target.z ? 1 : 0;
+        }
+        EXPECT_EQ(of_first, 32);
+    }
 }
 
 /// Irradiance at the origin facing up, by sampling; `bias` multiplies the density.
@@ -110,6 +138,31 @@ TEST(LightSampler, DeltaLightsArriveWithTheirProbability) {
     LightSelection no_delta;
     no_delta.delta_lights = false;
     EXPECT_TRUE(LightSampler(scene, no_delta).empty());
+}
+
+TEST(LightSampler, TwoNumbersReachSkyLampAndPointLights) {
+    SceneData scene = square_light();
+    scene.point_lights.push_back({{0, 2, 0}, Spectrum{4}});
+    Environment sky{4, 2, std::vector<Spectrum>(8, Spectrum{0.5f}), 0};
+    sky.radiance[0] = Spectrum{2};
+    scene.environment = sky;
+    LightSelection whole;
+    whole.compensate_for_mis = false;  // a density that covers the whole sky
+    const LightSampler lights(scene, whole);
+    const auto estimates = [&](double bias) {
+        std::vector<double> difference;
+        for (std::uint32_t i = 0; i < draws; ++i) {
+            const auto [choice, point] = numbers(i);
+            const auto value = [](const std::optional<LightSample>& s) {
+                return s ? double{std::max(0.0f, s->w_in.v.y)} * s->radiance.g / s->pdf : 0.0;
+            };
+            difference.push_back(value(lights.sample({0, 0, 0}, point)) * bias - value(lights.sample({0, 0, 0}, choice, point)));
+        }
+        return testing::estimate(difference);
+    };
+    const auto same = estimates(1), biased = estimates(1.02);
+    EXPECT_LT(std::abs(same.mean), 5 * same.standard_error);
+    EXPECT_GT(std::abs(biased.mean), 5 * biased.standard_error);  // 2 % must be caught
 }
 
 TEST(LightSampler, SkyAndLampShareTheSamples) {
