@@ -31,11 +31,12 @@ std::optional<LightProposal> propose_direct_light(const Transport& t, const Vert
                                                   const LightRandom& u) {
     const auto light = t.lights.sample(vertex.point.position, u.point);
     if (!light) return {};
-    const Spectrum reflected = unshadowed(vertex, *light);
+    if (!sides_agree(vertex.point, light->w_in)) return {};
+    const auto [value, bsdf_pdf] =
+        evaluate(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light->w_in));
+    const Spectrum reflected = value * light->radiance;
     if (is_black(reflected)) return {};
-    const float weight = light->delta ? 1
-                                      : mis_weight(light->pdf, pdf(vertex.bsdf, vertex.w_out,
-                                                                   vertex.point.frame.to_local(light->w_in)));
+    const float weight = light->delta ? 1 : mis_weight(light->pdf, bsdf_pdf);
     return LightProposal{shadow_ray(vertex.point, *light, u.opacity_seed), reflected * (weight / light->pdf)};
 }
 

@@ -67,6 +67,12 @@ struct MetallicRoughness {
     bool smooth = false;  // the specular lobe is a delta
 };
 
+/// What a BSDF says of one direction: eval and pdf, which share most of their work.
+struct BsdfValue {
+    Spectrum value;  // f·|cos θ|, 1/sr
+    float pdf = 0;   // 1/sr
+};
+
 using Bsdf =
     std::variant<Lambert, Mirror, RoughConductor, SmoothDielectric, RoughDielectric, MetallicRoughness>;
 
@@ -85,11 +91,27 @@ RELUMINE_DECLARE_BSDF(RoughDielectric)
 RELUMINE_DECLARE_BSDF(MetallicRoughness)
 #undef RELUMINE_DECLARE_BSDF
 
+/// Both of a model's functions, in one where that saves work.
+template <typename Model>
+BsdfValue evaluate(const Model& b, LocalDir w_out, LocalDir w_in) {
+    return {eval(b, w_out, w_in), pdf(b, w_out, w_in)};
+}
+inline BsdfValue evaluate(const Lambert& b, LocalDir, LocalDir w_in) {
+    const float density = std::max(0.0f, cos_theta(w_in)) * inv_pi;
+    return {b.albedo * density, density};
+}
+[[nodiscard]] BsdfValue evaluate(const RoughConductor& b, LocalDir w_out, LocalDir w_in);
+[[nodiscard]] BsdfValue evaluate(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in);
+
 inline Spectrum eval(const Bsdf& bsdf, LocalDir w_out, LocalDir w_in) {
     return std::visit([&](const auto& b) { return eval(b, w_out, w_in); }, bsdf);
 }
 inline float pdf(const Bsdf& bsdf, LocalDir w_out, LocalDir w_in) {
     return std::visit([&](const auto& b) { return pdf(b, w_out, w_in); }, bsdf);
+}
+inline BsdfValue evaluate(const Bsdf& bsdf, LocalDir w_out, LocalDir w_in) {
+    if (const auto* lambert = std::get_if<Lambert>(&bsdf)) return evaluate(*lambert, w_out, w_in);
+    return std::visit([&](const auto& b) { return evaluate(b, w_out, w_in); }, bsdf);
 }
 inline std::optional<BsdfSample> sample(const Bsdf& bsdf, LocalDir w_out, BsdfRandom u) {
     return std::visit([&](const auto& b) { return sample(b, w_out, u); }, bsdf);

@@ -237,5 +237,26 @@ TEST(Refraction, FollowsSnell) {
     EXPECT_NEAR(s->weight.r, 1 / 2.25f, 1e-5f);
 }
 
+TEST(Bsdf, EvaluateIsEvalAndPdf) {
+    const auto differences = [](const Bsdf& bsdf, float turned) {  // `turned` shifts eval's and pdf's azimuth
+        int count = 0;
+        for (std::uint32_t i = 0; i < 200; ++i) {
+            const auto [z, u] = random_numbers(3, i);
+            const LocalDir w_out = direction(0.05f + 0.95f * z, 1);
+            const LocalDir w_in = direction(2 * u.x - 1, 2 * pi * u.y), other = direction(2 * u.x - 1, 2 * pi * u.y + turned);
+            const BsdfValue both = evaluate(bsdf, w_out, w_in);
+            const Spectrum value = eval(bsdf, w_out, other);
+            const float density = pdf(bsdf, w_out, other);
+            const bool same = std::abs(both.pdf - density) <= 1e-6f * density && max_component(both.value - value) <= 1e-6f * max_component(value)
+                              && max_component(value - both.value) <= 1e-6f * max_component(value);
+            count += same ? 0 : 1;
+        }
+        return count;
+    };
+    for (const auto& [name, bsdf] : rough_bsdfs()) EXPECT_EQ(differences(bsdf, 0), 0) << name;
+    EXPECT_EQ(differences(Mirror{Spectrum{1}}, 0), 0);
+    EXPECT_GT(differences(RoughConductor{Spectrum{1}, ggx(0.3f)}, 0.1f), 50);
+}
+
 }  // namespace
 }  // namespace relumine

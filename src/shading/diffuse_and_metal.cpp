@@ -25,23 +25,25 @@ std::optional<BsdfSample> sample(const Mirror& b, LocalDir w_out, BsdfRandom) {
         {{-w_out.v.x, -w_out.v.y, w_out.v.z}}, schlick(b.f0, Spectrum{1}, cos_theta(w_out)), 1, true};
 }
 
-Spectrum eval(const RoughConductor& b, LocalDir w_out, LocalDir w_in) {
+BsdfValue evaluate(const RoughConductor& b, LocalDir w_out, LocalDir w_in) {
     if (cos_theta(w_in) <= 0) return {};
     const LocalDir m{normalize(w_out.v + w_in.v)};
-    return schlick(b.f0, Spectrum{1}, dot(w_in.v, m.v))
-           * (ggx_density(b.ggx, m) * ggx_masking_shadowing(b.ggx, w_out, w_in) / (4 * cos_theta(w_out)));
+    const float density = ggx_density(b.ggx, m);
+    return {schlick(b.f0, Spectrum{1}, dot(w_in.v, m.v))
+                * (density * ggx_masking_shadowing(b.ggx, w_out, w_in) / (4 * cos_theta(w_out))),
+            reflection_pdf(b.ggx, w_out, density)};
 }
 
-float pdf(const RoughConductor& b, LocalDir w_out, LocalDir w_in) {
-    if (cos_theta(w_in) <= 0) return 0;
-    return reflection_pdf(b.ggx, w_out, {normalize(w_out.v + w_in.v)});
+Spectrum eval(const RoughConductor& b, LocalDir w_out, LocalDir w_in) {
+    return evaluate(b, w_out, w_in).value;
 }
+float pdf(const RoughConductor& b, LocalDir w_out, LocalDir w_in) { return evaluate(b, w_out, w_in).pdf; }
 
 std::optional<BsdfSample> sample(const RoughConductor& b, LocalDir w_out, BsdfRandom u) {
     const LocalDir w_in = sample_reflection(b.ggx, w_out, u.direction);
-    const float density = pdf(b, w_out, w_in);
+    const auto [value, density] = evaluate(b, w_out, w_in);
     if (!(density > 0)) return {};
-    return BsdfSample{w_in, eval(b, w_out, w_in) / density, density};
+    return BsdfSample{w_in, value / density, density};
 }
 
 }  // namespace relumine

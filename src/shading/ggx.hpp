@@ -80,11 +80,11 @@ inline LocalDir sample_reflection(const Ggx& g, LocalDir w_out, Point2 u) {
     return reflect(w_out, {normalize({g.alpha * m.x, g.alpha * m.y, std::max(m.z, 1e-12f)})});
 }
 
-/// 1/sr over reflected directions with half vector `m` [Eto23, eq. 8].
-inline float reflection_pdf(const Ggx& g, LocalDir w_out, LocalDir m) {
+/// 1/sr over reflected directions whose half vector has ggx_density `density` [Eto23, eq. 8].
+inline float reflection_pdf(const Ggx& g, LocalDir w_out, float density) {
     const float stretched_length =
         std::sqrt(sqr(g.alpha) * (sqr(w_out.v.x) + sqr(w_out.v.y)) + sqr(w_out.v.z));
-    return ggx_density(g, m) / (2 * (reflection_bound(g, w_out) * w_out.v.z + stretched_length));
+    return density / (2 * (reflection_bound(g, w_out) * w_out.v.z + stretched_length));
 }
 
 /// Schlick's Fresnel reflectance between `f0` at normal and `f90` at grazing incidence.

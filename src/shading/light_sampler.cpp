@@ -51,6 +51,11 @@ float rescale(float u, float first, float width) {
     return std::clamp((u - first) / width, 0.0f, 0x1.fffffep-1f);
 }
 
+/// Density per steradian of a point on a plane that lies `height` below or above the point that sees it.
+float solid_angle_density(float per_area, float distance2, float distance, float height) {
+    return per_area * distance2 * distance / std::abs(height);
+}
+
 }  // namespace
 
 LightSampler::~LightSampler() = default;
@@ -82,7 +87,9 @@ LightSampler::LightSampler(const SceneData& scene, const LightSelection& selecti
                              min_group_share, 1 - min_group_share);
     if (local_power > 0) local_probability_ = 1 - environment_probability_;
     for (std::size_t i = 0; i < triangles_.size() && local_power > 0; ++i)
-        triangles_[i].probability = local_probability_ * (local_cdf_[i + 1] - local_cdf_[i]);
+        if (triangles_[i].area > 0)
+            triangles_[i].density =
+                local_probability_ * (local_cdf_[i + 1] - local_cdf_[i]) / triangles_[i].area;
 }
 
 void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& selection,
@@ -99,7 +106,8 @@ void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& 
         const Vec3 normal = cross(b - a, c - a) * winding;
         const float area = 0.5f * length(normal);
         triangles_.push_back({a, b - a, c - a, area > 0 ? normalize(normal) : normal, area, 0,
-                              rounding_offset({a, b, c}), i, t, material.double_sided});
+                              rounding_offset({a, b, c}), i, t, material.emission, material.double_sided,
+                              material.emission_texture || material.alpha_mode != AlphaMode::opaque});
         local_.push_back({Kind::triangle, static_cast<std::uint32_t>(triangles_.size() - 1)});
         powers.push_back(double{pi} * area * mean_emission(scene_, mesh, t)
                          * (material.double_sided ? 2 : 1));
@@ -124,12 +132,12 @@ void LightSampler::add_delta_lights(std::vector<double>& powers) {
     }
 }
 
-float LightSampler::triangle_density(const EmissiveTriangle& light, Vec3 from, Vec3 on_light) const {
-    const Vec3 to_light = on_light - from;
-    const float distance2 = length_squared(to_light);
-    const float cosine = std::abs(dot(to_light, light.normal)) / std::sqrt(distance2);
-    if (!(cosine > 0) || light.area <= 0) return 0;
-    return light.probability * distance2 / (light.area * cosine);
+Spectrum LightSampler::emitted(const EmissiveTriangle& light, const Hit& hit) const {
+    if (!light.varies) return light.radiance;
+    const Mesh& mesh = scene_.meshes[index(scene_.instances[light.instance].mesh)];
+    const Material& material = scene_.materials[index(mesh.material)];
+    const TextureCoordinates at = texture_coordinates(mesh, hit);
+    return material_emission(scene_, material, at.uv) * opacity(scene_, material, at);
 }
 
 std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle& light, Vec3 from,
@@ -137,23 +145,16 @@ std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle&
     const Point2 b = uniform_triangle(u);
     const Vec3 point = light.corner + light.edge1 * b.x + light.edge2 * b.y;
     const Vec3 to_light = point - from;
-    const float distance = length(to_light);
-    const bool front = dot(to_light, light.normal) < 0;
-    if (!(distance > 0) || (!front && !light.double_sided)) return {};
-    const float density = triangle_density(light, from, point);
+    const float distance2 = length_squared(to_light), height = dot(to_light, light.normal);
+    const bool front = height < 0;
+    if (height == 0 || !(distance2 > 0) || (!front && !light.double_sided)) return {};
+    const float distance = std::sqrt(distance2);
+    const float density = solid_angle_density(light.density, distance2, distance, height);
     if (!(density > 0)) return {};
-    const Hit hit{distance, b.x, b.y, light.instance, light.triangle};
-    const Mesh& mesh = scene_.meshes[index(scene_.instances[light.instance].mesh)];
-    const Material& material = scene_.materials[index(mesh.material)];
-    Spectrum radiance = material.emission;
-    if (material.emission_texture || material.alpha_mode != AlphaMode::opaque) {
-        const TextureCoordinates at = texture_coordinates(mesh, hit);
-        radiance = material_emission(scene_, material, at.uv) * opacity(scene_, material, at);
-    }
     return LightSample{{to_light / distance},
                        point + light.normal * (front ? light.offset : -light.offset),
                        distance,
-                       radiance,
+                       emitted(light, {distance, b.x, b.y, light.instance, light.triangle}),
                        density};
 }
 
@@ -203,7 +204,11 @@ std::optional<LightSample> LightSampler::sample(Vec3 from, Point2 u) const {
 
 float LightSampler::pdf(Vec3 from, const SurfacePoint& hit) const {
     const std::uint32_t first = first_triangle_[hit.instance];
-    return first == no_light ? 0.0f : triangle_density(triangles_[first + hit.triangle], from, hit.position);
+    if (first == no_light) return 0;
+    const EmissiveTriangle& light = triangles_[first + hit.triangle];
+    const Vec3 to_light = hit.position - from;
+    const float distance2 = length_squared(to_light), height = dot(to_light, light.normal);
+    return height == 0 ? 0.0f : solid_angle_density(light.density, distance2, std::sqrt(distance2), height);
 }
 
 float LightSampler::environment_pdf(WorldDir direction) const {

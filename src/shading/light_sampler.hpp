@@ -57,10 +57,12 @@ class LightSampler {
     struct EmissiveTriangle {
         Vec3 corner, edge1, edge2;  // world space
         Vec3 normal;                // unit, front
-        float area, probability;    // metres²; probability among all lights
+        float area;                 // metres²
+        float density;              // of its points among all lights', 1/metres²; 0 where it has no area
         float offset;               // metres along the normal that clear rounding errors
         std::uint32_t instance, triangle;
-        bool double_sided;
+        Spectrum radiance;  // where it is the same everywhere
+        bool double_sided, varies;
     };
     enum class Kind : std::uint8_t { triangle, point, spot, directional };
     struct LocalLight {
@@ -76,7 +78,7 @@ class LightSampler {
     [[nodiscard]] std::optional<LightSample> sample_environment(Point2 u) const;
     [[nodiscard]] std::size_t choose_local(float u) const;  // of local_
     [[nodiscard]] std::optional<LightSample> sample_local(std::size_t chosen, Vec3 from, Point2 u) const;
-    [[nodiscard]] float triangle_density(const EmissiveTriangle& light, Vec3 from, Vec3 on_light) const;
+    [[nodiscard]] Spectrum emitted(const EmissiveTriangle& light, const Hit& hit) const;
 
     const SceneData& scene_;
     std::optional<EnvironmentLight> environment_;

@@ -20,27 +20,30 @@ float specular_probability(const MetallicRoughness& b, LocalDir w_out) {
     return std::clamp(specular / (specular + diffuse), 0.1f, 0.9f);
 }
 
-Spectrum specular_lobe(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in, LocalDir m) {
-    return schlick(b.specular_f0, b.specular_f90, dot(w_in.v, m.v))
-           * (ggx_density(b.ggx, m) * ggx_masking_shadowing(b.ggx, w_out, w_in) / (4 * cos_theta(w_out)));
+BsdfValue evaluate(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in, float specular_probability) {
+    if (cos_theta(w_in) <= 0) return {};
+    const LocalDir m{normalize(w_out.v + w_in.v)};
+    const float cosine = dot(w_in.v, m.v), diffuse_pdf = cos_theta(w_in) * inv_pi;
+    const Spectrum diffuse = b.diffuse * (diffuse_pdf * coat_transmittance(b, cosine));
+    if (b.smooth) return {diffuse, (1 - specular_probability) * diffuse_pdf};
+    const float density = ggx_density(b.ggx, m);
+    const Spectrum specular =
+        schlick(b.specular_f0, b.specular_f90, cosine)
+        * (density * ggx_masking_shadowing(b.ggx, w_out, w_in) / (4 * cos_theta(w_out)));
+    return {diffuse + specular, (1 - specular_probability) * diffuse_pdf
+                                    + specular_probability * reflection_pdf(b.ggx, w_out, density)};
 }
 
 }  // namespace
 
-Spectrum eval(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in) {
-    if (cos_theta(w_in) <= 0) return {};
-    const LocalDir m{normalize(w_out.v + w_in.v)};
-    const Spectrum diffuse = b.diffuse * (inv_pi * cos_theta(w_in) * coat_transmittance(b, dot(w_in.v, m.v)));
-    return b.smooth ? diffuse : diffuse + specular_lobe(b, w_out, w_in, m);
+BsdfValue evaluate(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in) {
+    return evaluate(b, w_out, w_in, specular_probability(b, w_out));
 }
 
-float pdf(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in) {
-    if (cos_theta(w_in) <= 0) return 0;
-    const float specular = specular_probability(b, w_out);
-    const float diffuse = (1 - specular) * cos_theta(w_in) * inv_pi;
-    return b.smooth ? diffuse
-                    : diffuse + specular * reflection_pdf(b.ggx, w_out, {normalize(w_out.v + w_in.v)});
+Spectrum eval(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in) {
+    return evaluate(b, w_out, w_in, 0).value;
 }
+float pdf(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in) { return evaluate(b, w_out, w_in).pdf; }
 
 std::optional<BsdfSample> sample(const MetallicRoughness& b, LocalDir w_out, BsdfRandom u) {
     const float specular = specular_probability(b, w_out);
@@ -51,9 +54,9 @@ std::optional<BsdfSample> sample(const MetallicRoughness& b, LocalDir w_out, Bsd
     }
     const LocalDir w_in =
         choose_specular ? sample_reflection(b.ggx, w_out, u.direction) : cosine_hemisphere(u.direction);
-    const float density = pdf(b, w_out, w_in);
+    const auto [value, density] = evaluate(b, w_out, w_in, specular);
     if (!(density > 0)) return {};
-    return BsdfSample{w_in, eval(b, w_out, w_in) / density, density};
+    return BsdfSample{w_in, value / density, density};
 }
 
 float delta_probability(const Bsdf& bsdf, LocalDir w_out) {
