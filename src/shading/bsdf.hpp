@@ -114,6 +114,7 @@ inline BsdfValue evaluate(const Bsdf& bsdf, LocalDir w_out, LocalDir w_in) {
     return std::visit([&](const auto& b) { return evaluate(b, w_out, w_in); }, bsdf);
 }
 inline std::optional<BsdfSample> sample(const Bsdf& bsdf, LocalDir w_out, BsdfRandom u) {
+    if (const auto* lambert = std::get_if<Lambert>(&bsdf)) return sample(*lambert, w_out, u);
     return std::visit([&](const auto& b) { return sample(b, w_out, u); }, bsdf);
 }
 

@@ -237,6 +237,15 @@ TEST(Refraction, FollowsSnell) {
     EXPECT_NEAR(s->weight.r, 1 / 2.25f, 1e-5f);
 }
 
+TEST(Sampling, SineAndCosineOfAnOctantAreExactToFloats) {
+    for (int i = -1000; i <= 1000; ++i) {
+        const float x = pi / 4 * static_cast<float>(i) / 1000;
+        const auto [sine, cosine] = sine_cosine_of_octant(x);
+        EXPECT_NEAR(sine, std::sin(double{x}), 1e-7);
+        EXPECT_NEAR(cosine, std::cos(double{x}), 1e-7);
+    }
+}
+
 TEST(Bsdf, EvaluateIsEvalAndPdf) {
     const auto differences = [](const Bsdf& bsdf, float turned) {  // `turned` shifts eval's and pdf's azimuth
         int count = 0;

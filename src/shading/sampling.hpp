@@ -6,14 +6,30 @@
 
 namespace relumine {
 
+struct SineCosine {
+    float sine, cosine;
+};
+
+/// For |x| ≤ π/4, to 1e-7; Taylor's polynomials end where floats do.
+inline SineCosine sine_cosine_of_octant(float x) {
+    const float x2 = sqr(x);
+    const float sine = 1 - x2 * (1.0f / 6 - x2 * (1.0f / 120 - x2 * (1.0f / 5040 - x2 * (1.0f / 362880))));
+    const float cosine =
+        1
+        - x2
+              * (1.0f / 2
+                 - x2 * (1.0f / 24 - x2 * (1.0f / 720 - x2 * (1.0f / 40320 - x2 * (1.0f / 3628800)))));
+    return {x * sine, cosine};
+}
+
 /// Square to disk, area-preserving and with little distortion [Shirley97].
 inline Point2 concentric_disk(Point2 u) {
     const float x = 2 * u.x - 1, y = 2 * u.y - 1;
     if (x == 0 && y == 0) return {};
     const bool wide = std::abs(x) > std::abs(y);
     const float r = wide ? x : y;
-    const float phi = wide ? (pi / 4) * (y / x) : (pi / 2) - (pi / 4) * (x / y);
-    return {r * std::cos(phi), r * std::sin(phi)};
+    const auto [sine, cosine] = sine_cosine_of_octant((pi / 4) * (wide ? y / x : x / y));
+    return {r * (wide ? cosine : sine), r * (wide ? sine : cosine)};
 }
 
 /// Density cos θ / π.
