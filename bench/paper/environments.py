@@ -15,7 +15,8 @@ def directions(width: int, height: int) -> np.ndarray:
     """Unit vectors of the texels' centres, height x width x 3: u = atan2(z, x) / 2 pi + 1/2, v = acos(y) / pi."""
     phi = ((np.arange(width) + 0.5) / width - 0.5) * 2 * np.pi
     theta = (np.arange(height)[:, None] + 0.5) / height * np.pi
-    return np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.cos(theta), np.sin(theta) * np.sin(phi)), axis=2)
+    ring = np.sin(theta)
+    return np.stack(np.broadcast_arrays(ring * np.cos(phi), np.cos(theta), ring * np.sin(phi)), axis=2)
 
 
 def towards_sun() -> np.ndarray:

@@ -16,6 +16,7 @@ from shapes import quad  # noqa: E402
 
 ENOUGH_TRIANGLES = 300_000  # the paper's armadillo has 346 k
 SUN_TO_THE_LEFT = 75.0  # env_rotate in degrees: the sun of our environments shines from the front, left
+SUN_IN_THE_METAL = -14.0  # the same: its highlight lies on the plane, at the left, behind the posts
 ALPHA = 0.2  # GGX; glTF's roughness is its square root
 
 
@@ -27,24 +28,33 @@ class Scene:
     env_rotate: float = 0.0  # degrees
 
 
-def make_all(folder: pathlib.Path, dragon: pathlib.Path,
-             armadillo: pathlib.Path | None) -> tuple[list[Scene], list[str]]:
-    """The scenes that can be made, and why others cannot."""
+NAMES = ("shadow", "dragon", "armadillo")
+
+
+def make_all(folder: pathlib.Path, dragon: pathlib.Path, armadillo: pathlib.Path | None,
+             wanted: list[str] | None = None) -> tuple[list[Scene], list[str]]:
+    """The scenes that are wanted (None: all) and can be made, and why others cannot."""
     folder.mkdir(parents=True, exist_ok=True)
-    scenes = [Scene("shadow", ROOT / "scenes/shadow.glb", "bars and boxes over strongly glossy metal (GGX alpha 0.07)",
-                    env_rotate=-14.0)]
-    missing = []
-    if dragon.exists():
-        scenes.append(make_dragon(folder / "dragon.glb", dragon))
-    else:
-        missing.append(f"dragon: {dragon.name} is missing; scripts/fetch-models fetches it")
-    scenes.append(make_armadillo(folder / "armadillo.glb", armadillo))
+    scenes, missing = [], []
+    for name in wanted or NAMES:
+        if name == "shadow":
+            model = "bars and boxes over strongly glossy metal (GGX alpha 0.07), 110 triangles"
+            scenes.append(Scene(name, ROOT / "scenes/shadow.glb", model, SUN_IN_THE_METAL))
+        elif name == "armadillo":
+            scenes.append(make_armadillo(folder / "armadillo.glb", armadillo))
+        elif name != "dragon":
+            raise SystemExit(f"--scenes: expected some of {','.join(NAMES)}, found {name}")
+        elif dragon.exists():
+            scenes.append(make_dragon(folder / "dragon.glb", dragon))
+        else:
+            missing.append(f"dragon: {dragon.name} is missing; scripts/fetch-models fetches it")
     return scenes, missing
 
 
 def make_dragon(target: pathlib.Path, source: pathlib.Path) -> Scene:
     mesh = meshes.read_ply(source)
-    scene = Scene("dragon", target, f"Stanford dragon, {len(mesh[1]):,} triangles, metal (GGX alpha 0.2)", SUN_TO_THE_LEFT)
+    model = f"Stanford dragon, {len(mesh[1]):,} triangles, metal (GGX alpha 0.2)"
+    scene = Scene("dragon", target, model, SUN_TO_THE_LEFT)
     if up_to_date(target, source):
         return scene
     write_scene(target, stood(meshes.without_degenerate_triangles(mesh), width=1.0), base=(0.93, 0.72, 0.42),

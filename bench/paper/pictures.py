@@ -100,6 +100,12 @@ def caption(text: str, width: int) -> np.ndarray:
     return line
 
 
+def enlarged(picture: np.ndarray, least: int = 384) -> np.ndarray:
+    """The picture with each pixel repeated so often that it is at least so wide, and captions fit."""
+    times = -(-least // picture.shape[1])
+    return picture.repeat(times, axis=0).repeat(times, axis=1)
+
+
 def sheet(rows: list[list[tuple[str, np.ndarray]]], gap: int = 4) -> np.ndarray:
     """Pictures (8-bit, all of one size) in rows, each under its caption."""
     height, width, _ = rows[0][0][1].shape

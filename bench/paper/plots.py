@@ -46,7 +46,8 @@ def _panel(panel: Panel, colours: dict[str, str]) -> list[str]:
 
     parts = [f'<text x="{LEFT}" y="18" font-size="13">{escape(panel.title)}</text>',
              f'<text x="{(LEFT + WIDTH) / 2}" y="{HEIGHT - 8}" text-anchor="middle">{escape(panel.x_label)}</text>',
-             f'<text transform="translate(14 {HEIGHT / 2}) rotate(-90)" text-anchor="middle">{escape(panel.y_label)}</text>',
+             f'<text transform="translate(14 {HEIGHT / 2}) rotate(-90)" text-anchor="middle">'
+             f'{escape(panel.y_label)}</text>',
              f'<rect x="{LEFT}" y="{TOP}" width="{WIDTH - LEFT - RIGHT}" height="{HEIGHT - TOP - BOTTOM}" fill="none" '
              'stroke="#999"/>']
     for x in sorted({p[0] for p in points}):

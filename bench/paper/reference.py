@@ -36,12 +36,12 @@ class Reference:
 
 
 class References:
-    """`gather` with Sobol points, whose bright light is also sampled directly: the integrand of all methods."""
+    """`gather` whose bright light is also sampled directly: the integrand of all methods."""
 
     def __init__(self, relumine: Relumine, folder: pathlib.Path, rays: int, light_samples: int, max_passes: int,
                  log: Callable[[str], None]):
         self.relumine, self.folder, self.max_passes, self.log = relumine, folder, max_passes, log
-        self.options: Options = {"method": "gather", "sampler": "sobol", "gather-rays": rays,
+        self.options: Options = {"method": "gather", "sampler": "stratified", "gather-rays": rays,
                                  "light-samples": light_samples}
         folder.mkdir(parents=True, exist_ok=True)
 
@@ -65,8 +65,8 @@ class References:
                 return reference, True
             if reference.passes + 2 > self.max_passes:
                 return reference, False
-            self.log(f"    reference: L1 {error.l1:.3%} (goal {goal.l1:.3%}), rms {error.rms:.3%} (goal {goal.rms:.3%}) "
-                     f"after {reference.passes} passes")
+            self.log(f"    reference: L1 {error.l1:.3%} (goal {goal.l1:.3%}), rms {error.rms:.3%} "
+                     f"(goal {goal.rms:.3%}) after {reference.passes} passes")
             reference = self._with_another_pair(view, reference)
 
     def _with_another_pair(self, view: View, reference: Reference | None) -> Reference:
