@@ -65,9 +65,15 @@ Point2 correlated_multi_jitter(std::uint32_t index, std::uint32_t count, std::ui
     const std::uint32_t s = permute(index, count, low(key));
     const std::uint64_t jitter = hash(key, s);
     const std::uint32_t column = s % columns, row = s / columns;
-    const auto fine_x = static_cast<float>(permute(row, rows, high(key)));
-    const auto fine_y = static_cast<float>(permute(column, columns, low(mix(key))));
     const auto nx = static_cast<float>(columns), ny = static_cast<float>(rows);
+    const auto fine_x = static_cast<float>(permute(row, rows, high(key)));
+    if (columns * rows != count) {  // the last row is not whole: strata of y alone, permuted columns
+        const auto permuted_column = static_cast<float>(permute(column, columns, low(mix(key))));
+        const float irregular_x = (permuted_column + (fine_x + unit_float(low(jitter))) / ny) / nx;
+        const float irregular_y = (static_cast<float>(s) + unit_float(high(jitter))) / static_cast<float>(count);
+        return {std::min(irregular_x, 0x1.fffffep-1f), std::min(irregular_y, 0x1.fffffep-1f)};
+    }
+    const auto fine_y = static_cast<float>(permute(column, columns, low(mix(key))));
     const float x = (static_cast<float>(column) + (fine_x + unit_float(low(jitter))) / ny) / nx;
     const float y = (static_cast<float>(row) + (fine_y + unit_float(high(jitter))) / nx) / ny;
     return {std::min(x, 0x1.fffffep-1f), std::min(y, 0x1.fffffep-1f)};

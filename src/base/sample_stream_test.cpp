@@ -65,11 +65,11 @@ TEST(Stratified, StaysInTheUnitSquareForAnyCount) {
 }
 
 /// χ² over a 16 × 16 grid of one point from each of many keys: what different pixels see must be uniform.
-double uniformity_p(PointSet set, std::uint32_t index) {
+double uniformity_p(PointSet set, std::uint32_t index, std::uint32_t count) {
     constexpr int side = 16, draws = 100'000;
     std::vector<double> observed(side * side), expected(side * side, double{draws} / (side * side));
     for (std::uint64_t key = 0; key < draws; ++key) {
-        const Point2 p = SampleStream{mix(key), index, 16, set}.next2(Dim::light_point, 2);
+        const Point2 p = SampleStream{mix(key), index, count, set}.next2(Dim::light_point, 2);
         ++observed[static_cast<std::size_t>(static_cast<int>(p.y * side) * side
                                             + static_cast<int>(p.x * side))];
     }
@@ -77,9 +77,11 @@ double uniformity_p(PointSet set, std::uint32_t index) {
 }
 
 TEST(SampleStream, IsUniformOverPixels) {
-    const double level = testing::sidak(1e-6, 6);
+    const double level = testing::sidak(1e-6, 12);
     for (const PointSet set : {PointSet::sobol, PointSet::stratified, PointSet::independent})
-        for (const std::uint32_t index : {0u, 5u}) EXPECT_GT(uniformity_p(set, index), level);
+        for (const std::uint32_t index : {0u, 5u})
+            for (const std::uint32_t count : {16u, 127u})  // the second leaves no whole grid
+                EXPECT_GT(uniformity_p(set, index, count), level) << index << " of " << count;
 }
 
 /// Correlation of two dimensions' first coordinates over the samples of one pixel, averaged over pixels.
