@@ -8,9 +8,9 @@
 
 namespace relumine {
 
-enum class RayPurpose : std::uint8_t { camera, prefix, gather, bounce, shadow };
-inline constexpr std::array<const char*, 5> ray_purpose_names{"camera", "prefix", "gather", "bounce",
-                                                              "shadow"};
+enum class RayPurpose : std::uint8_t { camera, prefix, gather, bounce, shadow, record, gap, product };
+inline constexpr std::array<const char*, 8> ray_purpose_names{"camera", "prefix", "gather", "bounce",
+                                                              "shadow", "record", "gap",    "product"};
 
 struct RayCounts {
     std::array<std::uint64_t, ray_purpose_names.size()> by_purpose{};

@@ -3,27 +3,17 @@
 #include "base/sample_packet_kernel.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <vector>
+
+#include "tests/targets.hpp"
 
 namespace relumine {
 namespace {
 
-using Streams = std::array<SampleStream, packet_size>;
+using testing::on_every_target;
 
-/// Runs `check` once for each instruction set that the machine has and the kernels are compiled for.
-template <typename Check>
-void on_every_target(const Check& check) {
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(target);
-        SCOPED_TRACE(hwy::TargetName(target));
-        check();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
-}
+using Streams = std::array<SampleStream, packet_size>;
 
 Streams random_streams(std::uint64_t seed, PointSet set) {
     Streams streams;

@@ -70,7 +70,8 @@ Point2 correlated_multi_jitter(std::uint32_t index, std::uint32_t count, std::ui
     if (columns * rows != count) {  // the last row is not whole: strata of y alone, permuted columns
         const auto permuted_column = static_cast<float>(permute(column, columns, low(mix(key))));
         const float irregular_x = (permuted_column + (fine_x + unit_float(low(jitter))) / ny) / nx;
-        const float irregular_y = (static_cast<float>(s) + unit_float(high(jitter))) / static_cast<float>(count);
+        const float irregular_y =
+            (static_cast<float>(s) + unit_float(high(jitter))) / static_cast<float>(count);
         return {std::min(irregular_x, 0x1.fffffep-1f), std::min(irregular_y, 0x1.fffffep-1f)};
     }
     const auto fine_y = static_cast<float>(permute(column, columns, low(mix(key))));

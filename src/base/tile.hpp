@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/cache_counts.hpp"
 #include "base/ray_counts.hpp"
 #include "base/vec.hpp"
 #include "relumine/image.hpp"
@@ -29,12 +30,21 @@ struct FirstSurface {
     float material_id = 0;  // index + 1; 0: nothing
 };
 
+/// How records served a camera sample; all zero where none did.
+struct CacheFigures {
+    float records = 0;  // reprojected
+    float gaps = 0;     // share of the hemisphere left open after that, [0, 1]
+    float layers = 0;   // of these records that were seen
+    float unknown = 0;  // share of the hemisphere in the last record's unknown mask, [0, 1]
+};
+
 /// Sums over the samples of one pixel.
 struct PixelSums {
     Spectrum radiance, radiance_squared;
     SplitRadiance split;
     Spectrum albedo;
     Vec3 normal;
+    CacheFigures cache;
     FirstSurface first;  // of sample 0 alone: positions and ids have no mean
     std::uint32_t samples = 0;
 };
@@ -50,6 +60,7 @@ struct Tile {
     std::uint32_t first_sample = 0, sample_count = 0;
     std::vector<PixelSums> pixels;  // row-major over rect
     RayCounts rays;
+    CacheCounts cache;
     std::uint64_t non_finite = 0;  // samples dropped
     std::optional<NonFiniteSample> first_non_finite;
 
@@ -58,7 +69,8 @@ struct Tile {
     }
 
     /// Adds a sample to its pixel, which the tile contains, or drops it where the radiance is not finite.
-    void add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance, const FirstSurface& surface);
+    void add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance, const FirstSurface& surface,
+             const CacheFigures& figures = {});
 };
 
 /// An empty tile over `rect`.

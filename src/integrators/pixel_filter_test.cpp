@@ -24,10 +24,13 @@ double filter_p(const PixelFilter& filter) {
     double total = 0;
     for (int i = 0; i < cells * fine; ++i) total += window(-1.5 + 3 * (i + 0.5) / (cells * fine));
     for (int i = 0; i < cells * fine; ++i)
-        expected[static_cast<std::size_t>(i / fine)] += draws * window(-1.5 + 3 * (i + 0.5) / (cells * fine)) / total;
+        expected[static_cast<std::size_t>(i / fine)] +=
+            draws * window(-1.5 + 3 * (i + 0.5) / (cells * fine)) / total;
     for (std::uint32_t i = 0; i < draws; ++i) {
-        const double x = filter.position(SampleStream{1, i, 1, PointSet::independent}.next2(Dim::pixel)).x - 0.5;
-        ++observed[static_cast<std::size_t>(std::clamp(static_cast<int>((x + 1.5) / 3 * cells), 0, cells - 1))];
+        const double x =
+            filter.position(SampleStream{1, i, 1, PointSet::independent}.next2(Dim::pixel)).x - 0.5;
+        ++observed[static_cast<std::size_t>(
+            std::clamp(static_cast<int>((x + 1.5) / 3 * cells), 0, cells - 1))];
     }
     return testing::chi_square_p(observed, expected);
 }

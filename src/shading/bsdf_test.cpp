@@ -252,11 +252,13 @@ TEST(Bsdf, EvaluateIsEvalAndPdf) {
         for (std::uint32_t i = 0; i < 200; ++i) {
             const auto [z, u] = random_numbers(3, i);
             const LocalDir w_out = direction(0.05f + 0.95f * z, 1);
-            const LocalDir w_in = direction(2 * u.x - 1, 2 * pi * u.y), other = direction(2 * u.x - 1, 2 * pi * u.y + turned);
+            const LocalDir w_in = direction(2 * u.x - 1, 2 * pi * u.y),
+                           other = direction(2 * u.x - 1, 2 * pi * u.y + turned);
             const BsdfValue both = evaluate(bsdf, w_out, w_in);
             const Spectrum value = eval(bsdf, w_out, other);
             const float density = pdf(bsdf, w_out, other);
-            const bool same = std::abs(both.pdf - density) <= 1e-6f * density && max_component(both.value - value) <= 1e-6f * max_component(value)
+            const bool same = std::abs(both.pdf - density) <= 1e-6f * density
+                              && max_component(both.value - value) <= 1e-6f * max_component(value)
                               && max_component(value - both.value) <= 1e-6f * max_component(value);
             count += same ? 0 : 1;
         }

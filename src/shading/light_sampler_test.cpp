@@ -61,7 +61,10 @@ TEST(LightSampler, PointsAreUniformOverTheLight) {
         return p_of_grid([&](Numbers n) { return lights.sample({0, 0, 0}, n.choice, squeeze(n.point)); });
     };
     EXPECT_GT(p([](Point2 u) { return u; }), 1e-6);
-    EXPECT_LT(p([](Point2 u) { return Point2{0.99f * u.x, u.y}; }), 1e-6);  // 1 % of the square left out must be caught
+    EXPECT_LT(p([](Point2 u) {
+                  return Point2{0.99f * u.x, u.y};
+              }),
+              1e-6);  // 1 % of the square left out must be caught
 }
 
 TEST(LightSampler, PointsAreUniformWhereTwoNumbersDoForThree) {
@@ -80,7 +83,8 @@ TEST(LightSampler, BothHalvesOfASquareGetTheSameNumberOfSobolPoints) {
     for (std::uint64_t key = 0; key < 16; ++key) {
         int of_first = 0;
         for (std::uint32_t i = 0; i < 64; ++i) {
-            const auto s = lights.sample({0, 0, 0}, SampleStream{mix(key), i, 64, PointSet::sobol}.next2(Dim::light_point));
+            const auto s = lights.sample(
+                {0, 0, 0}, SampleStream{mix(key), i, 64, PointSet::sobol}.next2(Dim::light_point));
             of_first += s->target.x > s->target.z ? 1 : 0;
         }
         EXPECT_EQ(of_first, 32);
@@ -100,11 +104,13 @@ testing::Estimate irradiance(const LightSampler& lights, Vec3 from, double bias 
 
 TEST(LightSampler, DensityIntegratesToTheFormFactor) {
     const SceneData scene = square_light();
-    // Of a square of half side a = 1 at height h = 1 over its centre: F = 4/π · a/√(a²+h²) · atan(a/√(a²+h²)) [Howell, C-11]
+    // Of a square of half side a = 1 at height h = 1 over its centre: F = 4/π · a/√(a²+h²) · atan(a/√(a²+h²))
+    // [Howell, C-11]
     const double s = 1 / std::sqrt(2.0), expected = 3 * 4 * s * std::atan(s);
     const auto [mean, error, count] = irradiance(LightSampler(scene, {}), {0, 0, 0});
     EXPECT_LT(std::abs(mean - expected), 5 * error);
-    EXPECT_GT(std::abs(irradiance(LightSampler(scene, {}), {0, 0, 0}, 1.02).mean - expected), 5 * error);  // 2 % must be caught
+    EXPECT_GT(std::abs(irradiance(LightSampler(scene, {}), {0, 0, 0}, 1.02).mean - expected),
+              5 * error);  // 2 % must be caught
 }
 
 TEST(LightSampler, PdfOfAHitIsThatOfTheSample) {
@@ -124,7 +130,8 @@ TEST(LightSampler, PdfOfAHitIsThatOfTheSample) {
 TEST(LightSampler, TheBackOfASingleSidedLightIsDark) {
     const SceneData scene = square_light();
     const LightSampler lights(scene, {});
-    for (std::uint32_t i = 0; i < 100; ++i) EXPECT_FALSE(lights.sample({0, 2, 0}, numbers(i).choice, numbers(i).point));
+    for (std::uint32_t i = 0; i < 100; ++i)
+        EXPECT_FALSE(lights.sample({0, 2, 0}, numbers(i).choice, numbers(i).point));
 }
 
 TEST(LightSampler, DeltaLightsArriveWithTheirProbability) {
@@ -156,7 +163,8 @@ TEST(LightSampler, TwoNumbersReachSkyLampAndPointLights) {
             const auto value = [](const std::optional<LightSample>& s) {
                 return s ? double{std::max(0.0f, s->w_in.v.y)} * s->radiance.g / s->pdf : 0.0;
             };
-            difference.push_back(value(lights.sample({0, 0, 0}, point)) * bias - value(lights.sample({0, 0, 0}, choice, point)));
+            difference.push_back(value(lights.sample({0, 0, 0}, point)) * bias
+                                 - value(lights.sample({0, 0, 0}, choice, point)));
         }
         return testing::estimate(difference);
     };

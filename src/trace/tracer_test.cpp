@@ -24,7 +24,8 @@ SceneData soup(std::uint32_t triangles, int instances, AlphaMode alpha = AlphaMo
     mesh.positions.reserve(3 * triangles + 2);
     for (std::uint32_t i = 0; i < triangles; ++i) {
         const Vec3 center = random_point(i, 1);
-        for (std::uint32_t corner = 0; corner < 3; ++corner) mesh.positions.push_back(center + random_point(1000 + 3 * i + corner, 0.2f));
+        for (std::uint32_t corner = 0; corner < 3; ++corner)
+            mesh.positions.push_back(center + random_point(1000 + 3 * i + corner, 0.2f));
         mesh.triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}});
     }
     scene.meshes.push_back(std::move(mesh));
@@ -45,15 +46,19 @@ Ray random_ray(std::uint32_t i) {
 /// Möller and Trumbore's test in double.
 double distance_to(const Ray& ray, Vec3 a, Vec3 b, Vec3 c) {
     const Vec3 e1 = b - a, e2 = c - a, p = cross(ray.direction.v, e2), t = ray.origin - a, q = cross(t, e1);
-    const double det = dot(e1, p), u = dot(t, p) / det, v = dot(ray.direction.v, q) / det, distance = dot(e2, q) / det;
-    return u >= 0 && v >= 0 && u + v <= 1 && distance > 0 ? distance : std::numeric_limits<double>::infinity();
+    const double det = dot(e1, p), u = dot(t, p) / det, v = dot(ray.direction.v, q) / det,
+                 distance = dot(e2, q) / det;
+    return u >= 0 && v >= 0 && u + v <= 1 && distance > 0 ? distance
+                                                          : std::numeric_limits<double>::infinity();
 }
 
 double closest_by_trying_all(const SceneData& scene, const Ray& ray) {
     double least = std::numeric_limits<double>::infinity();
     for (const Instance& instance : scene.instances)
         for (const Triangle& triangle : scene.meshes[0].triangles) {
-            const auto corner = [&](std::size_t i) { return instance.world_from_object.point(scene.meshes[0].positions[triangle.vertex[i]]); };
+            const auto corner = [&](std::size_t i) {
+                return instance.world_from_object.point(scene.meshes[0].positions[triangle.vertex[i]]);
+            };
             least = std::min(least, distance_to(ray, corner(0), corner(1), corner(2)));
         }
     return least;
@@ -88,7 +93,8 @@ TEST(Tracer, PacketsAgreeWithSingleRays) {
     const Tracer tracer(scene, never_asked());
     for (std::uint32_t packet = 0; packet < 100; ++packet) {
         std::array<Ray, packet_size> rays;
-        for (std::uint32_t lane = 0; lane < packet_size; ++lane) rays[lane] = random_ray(static_cast<std::uint32_t>(packet_size) * packet + lane);
+        for (std::uint32_t lane = 0; lane < packet_size; ++lane)
+            rays[lane] = random_ray(static_cast<std::uint32_t>(packet_size) * packet + lane);
         rays[3].t_max = -1;  // left out
         std::array<Hit, packet_size> hits;
         std::array<bool, packet_size> blocked{};
@@ -98,7 +104,9 @@ TEST(Tracer, PacketsAgreeWithSingleRays) {
             const Hit alone = lane == 3 ? Hit{} : tracer.closest_hit(rays[lane]);
             EXPECT_EQ(hits[lane].instance, alone.instance);
             EXPECT_EQ(blocked[lane], static_cast<bool>(alone));
-            if (alone) { EXPECT_NEAR(hits[lane].t, alone.t, 1e-4f); }
+            if (alone) {
+                EXPECT_NEAR(hits[lane].t, alone.t, 1e-4f);
+            }
         }
     }
 }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rectangles of pixels: cutting and growing them.
+#pragma once
+
+#include <algorithm>
+
+#include "relumine/image.hpp"
+
+namespace relumine {
+
+inline PixelRect intersection(const PixelRect& a, const PixelRect& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+inline PixelRect grown(const PixelRect& r, int border) {
+    return {r.x0 - border, r.y0 - border, r.x1 + border, r.y1 + border};
+}
+
+}  // namespace relumine

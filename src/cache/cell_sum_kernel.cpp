@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernel that decodes, sums and weighs radiance.
+#include "cache/cell_sum_kernel.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cache/cell_sum_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "base/rgbe.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::ScalableTag<float>;
+using I = hn::Rebind<std::int32_t, F>;
+using U = hn::Rebind<std::uint32_t, F>;
+using VF = hn::Vec<F>;
+using VU = hn::Vec<U>;
+
+struct Spectrums {
+    VF r, g, b;
+};
+
+HWY_INLINE Spectrums unpack(VU packed) {
+    const U u;
+    const F f;
+    const VU exponent = hn::ShiftRight<24>(packed);
+    const auto seen =
+        hn::RebindMask(u, hn::Gt(hn::BitCast(I(), exponent), hn::Set(I(), least_rgbe_exponent - 1)));
+    const VU bits = hn::ShiftLeft<23>(hn::Sub(exponent, hn::Set(u, 9)));
+    const VF unit = hn::BitCast(f, hn::IfThenElseZero(seen, bits));
+    const VU byte = hn::Set(u, 255);
+    const auto channel = [&](VU v) {
+        return hn::Mul(hn::ConvertTo(f, hn::BitCast(I(), hn::And(v, byte))), unit);
+    };
+    return {channel(packed), channel(hn::ShiftRight<8>(packed)), channel(hn::ShiftRight<16>(packed))};
+}
+
+HWY_INLINE Spectrums add(const Spectrums& a, const Spectrums& b) {
+    return {hn::Add(a.r, b.r), hn::Add(a.g, b.g), hn::Add(a.b, b.b)};
+}
+
+/// Sums of neighbouring lanes: half of them from `low`, half from `high`.
+HWY_INLINE VF sum_pairs(VF low, VF high) {
+#if HWY_TARGET == HWY_SCALAR
+    return hn::Add(low, high);
+#else
+    const F f;
+    return hn::Add(hn::ConcatEven(f, high, low), hn::ConcatOdd(f, high, low));
+#endif
+}
+
+/// The sums over the next Lanes cells.
+HWY_INLINE Spectrums cells(const std::uint32_t* row) {
+    const U u;
+    const std::size_t lanes = hn::Lanes(u);
+    const std::uint32_t* below = row + mask_side;
+    const Spectrums low = add(unpack(hn::LoadU(u, row)), unpack(hn::LoadU(u, below)));
+    const Spectrums high = add(unpack(hn::LoadU(u, row + lanes)), unpack(hn::LoadU(u, below + lanes)));
+    return {sum_pairs(low.r, high.r), sum_pairs(low.g, high.g), sum_pairs(low.b, high.b)};
+}
+
+void sum_all(std::span<const std::uint32_t> radiance, const CellWeights& weights, std::span<float> products,
+             Spectrum& out) {
+    const F f;
+    constexpr std::size_t side = mask_side / 2;
+    const std::size_t lanes = hn::Lanes(f);
+    Spectrums sum{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
+    for (std::size_t y = 0; y < side; ++y)
+        for (std::size_t x = 0; x < side; x += lanes) {
+            const std::size_t cell = y * side + x;
+            const Spectrums radiant = cells(&radiance[y * 2 * mask_side + 2 * x]);
+            const Spectrums term{hn::Mul(radiant.r, hn::LoadU(f, &weights.r[cell])),
+                                 hn::Mul(radiant.g, hn::LoadU(f, &weights.g[cell])),
+                                 hn::Mul(radiant.b, hn::LoadU(f, &weights.b[cell]))};
+            sum = add(sum, term);
+            if (products.empty()) continue;
+            const VF luminance =
+                hn::MulAdd(term.r, hn::Set(f, 0.2126f),
+                           hn::MulAdd(term.g, hn::Set(f, 0.7152f), hn::Mul(term.b, hn::Set(f, 0.0722f))));
+            hn::StoreU(luminance, f, &products[cell]);
+        }
+    out = {hn::GetLane(hn::SumOfLanes(f, sum.r)), hn::GetLane(hn::SumOfLanes(f, sum.g)),
+           hn::GetLane(hn::SumOfLanes(f, sum.b))};
+}
+
+}  // namespace
+}  // namespace relumine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine {
+
+HWY_EXPORT(sum_all);
+
+Spectrum sum_cells(std::span<const std::uint32_t> radiance, const CellWeights& weights,
+                   std::span<float> products) {
+    Spectrum sum;
+    HWY_DYNAMIC_DISPATCH(sum_all)(radiance, weights, products, sum);
+    return sum;
+}
+
+}  // namespace relumine
+#endif

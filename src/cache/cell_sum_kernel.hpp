@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums packed radiance over cells of 2 × 2 bits and weighs it by cell.
+#pragma once
+
+#include <span>
+
+#include "base/vec.hpp"
+#include "cache/mask.hpp"
+
+namespace relumine {
+
+struct CellWeights {
+    std::span<const float> r, g, b;
+};
+
+/// Σ over cells of weight × Σ over the cell's bits of radiance. `radiance`: mask_side², RGBE; `weights`:
+/// (mask_side/2)² each. Where `products` is not empty it receives the luminance of each cell's term.
+[[nodiscard]] Spectrum sum_cells(std::span<const std::uint32_t> radiance, const CellWeights& weights,
+                                 std::span<float> products);
+
+}  // namespace relumine

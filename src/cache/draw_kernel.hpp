@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawing projected surfels: texture under an alpha mask, whole rows of bits at a time [V, §3.3–3.4].
+#pragma once
+
+#include <span>
+
+#include "cache/mask.hpp"
+#include "cache/record.hpp"
+
+namespace relumine {
+
+namespace detail {
+inline constexpr auto reciprocals = [] {  // of 1 … mask_side in 16-bit fixed point, rounded down
+    std::array<std::uint32_t, mask_side + 1> table{};
+    for (std::uint32_t i = 1; i <= mask_side; ++i) table[i] = 65536 / i;
+    return table;
+}();
+}  // namespace detail
+
+/// A surfel's texture over the bits of its rectangle: bit i of `bits` shows texel ⌊(i + ½)·texels / bits⌋, in
+/// 16-bit fixed point.
+class TexelSteps {
+  public:
+    TexelSteps(std::uint32_t texels, std::uint32_t bits) : step_(texels * detail::reciprocals[bits]) {}
+    [[nodiscard]] std::uint32_t operator()(std::uint32_t bit) const {
+        return (bit * step_ + step_ / 2) >> 16;
+    }
+    [[nodiscard]] std::uint32_t step() const { return step_; }
+
+  private:
+    std::uint32_t step_;
+};
+
+/// What surfels are drawn into.
+struct Canvas {
+    Mask& open;                         // bits that may be drawn; those drawn are taken away
+    Mask& covered;                      // bits that have been drawn are added
+    std::span<std::uint32_t> radiance;  // mask_side², row-major in (y, x)
+    std::span<std::uint32_t> direct;    // the same, or empty
+};
+
+/// What they are drawn with.
+struct RecordTexture {
+    std::span<const std::uint32_t> radiance;  // side² (+ surfel_padding), row-major in (v, u)
+    std::span<const std::uint32_t> direct;    // the same; used only where the canvas keeps it
+    std::size_t side;
+};
+
+/// Draws surfels one after the other where bits are open; whether any bit was. `masks[i]` belongs to
+/// `texels[i]`; the canvas's arrays must have room for surfel_padding more elements past what is drawn.
+bool draw_surfels(std::span<const BitRect> masks, std::span<const TexelRect> texels,
+                  const RecordTexture& texture, const Canvas& canvas);
+
+}  // namespace relumine

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels against their scalar definitions, on every instruction set that this machine has; built a
+// second time with one lane alone (tests/CMakeLists.txt).
+#include <gtest/gtest.h>
+#include <half.h>
+
+#include "base/hash.hpp"
+#include "base/rgbe.hpp"
+#include "cache/cell_sum_kernel.hpp"
+#include "cache/draw_kernel.hpp"
+#include "cache/hemisphere_map.hpp"
+#include "cache/project_kernel.hpp"
+#include "cache/receiver_bsdf.hpp"
+#include "tests/targets.hpp"
+
+namespace relumine {
+namespace {
+
+using testing::on_every_target;
+
+float uniform(std::uint64_t i, std::uint64_t what, float low, float high) {
+    return low + (high - low) * unit_float(static_cast<std::uint32_t>(hash(i, what)));
+}
+
+Vec3 random_direction(std::uint64_t i, std::uint64_t what) {
+    const float z = uniform(i, what, -1, 1), phi = uniform(i, what + 1, 0, 2 * pi), r = std::sqrt(1 - z * z);
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+/// Surfels as records have them: quads of a few texels, near and far, some of them under the horizon.
+Surfels random_surfels(std::size_t count) {
+    Surfels s;
+    s.count = s.stride = count;
+    s.scale = 0.01f;
+    s.corners.resize(corner_planes * count + surfel_padding);
+    s.texels.resize(count + surfel_padding);
+    s.layer_begin = {0, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count)};
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto texel = [&](std::uint64_t what, int most) {
+            return static_cast<std::uint8_t>(uniform(i, what, 0, static_cast<float>(most)));
+        };
+        s.texels[i] = {texel(1, 56), texel(2, 56), static_cast<std::uint8_t>(1 + texel(3, 8)),
+                       static_cast<std::uint8_t>(1 + texel(4, 8))};
+        const float distance = std::exp(uniform(i, 5, -1, 6));
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const TexelRect& t = s.texels[i];
+            const Point2 p{static_cast<float>(t.u + (corner % 2) * t.width) / 64,
+                           static_cast<float>(t.v + (corner / 2) * t.height) / 64};
+            const Vec3 offset = square_to_hemisphere(p).v * (distance * uniform(i, 6 + corner, 0.8f, 1.2f));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                s.corners[(3 * corner + axis) * s.stride + i] = half(offset[static_cast<int>(axis)]).bits();
+        }
+    }
+    return s;
+}
+
+struct Box {
+    float x0, x1, y0, y1;
+};
+
+struct ScalarProjection {
+    BitRect mask, trail;
+};
+
+std::uint8_t first_bit(float edge) {
+    return static_cast<std::uint8_t>(std::min(std::max(std::ceil(edge - 0.5f), 0.0f), float{mask_side}));
+}
+
+BitRect rounded(const Box& b) { return {first_bit(b.x0), first_bit(b.x1), first_bit(b.y0), first_bit(b.y1)}; }
+
+struct Corner {
+    float x, y, cosine;
+};
+
+/// The kernel's operations one by one; hemisphere_to_square up to rounding.
+Corner project_corner(Vec3 q, const Frame& frame) {
+    const Vec3 w = frame.to_local({q}).v;
+    const float length = std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z), ax = std::abs(w.x), ay = std::abs(w.y);
+    const float major = std::max(std::max(ax, ay), length * 1e-12f);
+    const float inverse = 1 / std::max(length * major, 1e-37f), cosine = w.z * (major * inverse);
+    const float r = std::sqrt(std::max(0.0f, 1 - cosine));
+    const float across = r * octant(std::min(std::min(ax, ay) * (length * inverse), 1.0f));
+    const auto bits = [](float magnitude, float sign) { return 64 * std::copysign(magnitude, sign) + 64; };
+    return {bits(ax >= ay ? r : across, w.x), bits(ax >= ay ? across : r, w.y), cosine};
+}
+
+Box bounds(const std::array<Corner, 4>& p) {
+    const auto [x0, x1] = std::minmax({p[0].x, p[1].x, p[2].x, p[3].x});
+    const auto [y0, y1] = std::minmax({p[0].y, p[1].y, p[2].y, p[3].y});
+    return {x0, x1, y0, y1};
+}
+
+ScalarProjection project_one(const Surfels& s, std::size_t i, const Projection& projection) {
+    std::array<Corner, 4> now, before;
+    for (std::size_t c = 0; c < 4; ++c) {
+        const auto plane = [&](std::size_t axis) {
+            half h;
+            h.setBits(s.corners[(3 * c + axis) * s.stride + i]);
+            return static_cast<float>(h) * s.scale;
+        };
+        const Vec3 q{plane(0), plane(1), plane(2)};
+        now[c] = project_corner(q + projection.shift, projection.frame);
+        before[c] = project_corner(q, projection.frame);
+    }
+    const TexelRect& t = s.texels[i];
+    const float per_texel = static_cast<float>(mask_side) / static_cast<float>(projection.side);
+    const Box texels{t.u * per_texel, t.u * per_texel + t.width * per_texel, t.v * per_texel,
+                     t.v * per_texel + t.height * per_texel};
+    const Box mask = bounds(now), old = projection.rotated ? bounds(before) : texels;
+    const bool above = std::max({now[0].cosine, now[1].cosine, now[2].cosine, now[3].cosine}) > 0;
+    const bool faces =
+        (now[1].x - now[2].x) * (now[3].y - now[0].y) - (now[1].y - now[2].y) * (now[3].x - now[0].x) > 0;
+    const auto allowed = [](float low, float high) { return (high - low) * largest_growth + growth_margin; };
+    const bool fits = mask.x1 - mask.x0 <= allowed(texels.x0, texels.x1)
+                      && mask.y1 - mask.y0 <= allowed(texels.y0, texels.y1);
+    const Box both{std::min(old.x0, mask.x0), std::max(old.x1, mask.x1), std::min(old.y0, mask.y0),
+                   std::max(old.y1, mask.y1)};
+    return {above && faces && fits ? rounded(mask) : BitRect{}, rounded(above ? both : old)};
+}
+
+TEST(ProjectKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
+    on_every_target([] {
+        int drawn = 0;
+        for (const std::size_t count :
+             {std::size_t{0}, std::size_t{1}, std::size_t{5}, std::size_t{16}, std::size_t{333}}) {
+            const Surfels s = random_surfels(count);
+            std::vector<BitRect> masks(count + surfel_padding), trails(count + surfel_padding);
+            for (std::uint64_t pose = 0; pose < 20; ++pose) {
+                const Vec3 normal = normalize(Vec3{0, 0, 1} + random_direction(pose, 20) * 0.2f);
+                const Projection p{frame_around(normal),
+                                   random_direction(pose, 30) * uniform(pose, 40, 0, 0.5f), pose % 2 == 0,
+                                   64};
+                project_surfels(s, 0, count, p, masks, trails);
+                for (std::size_t i = 0; i < count; ++i) {
+                    const ScalarProjection expected = project_one(s, i, p);
+                    ASSERT_EQ(masks[i], expected.mask) << i;
+                    ASSERT_EQ(trails[i], expected.trail) << i;
+                    drawn += !masks[i].empty();
+                }
+            }
+        }
+        EXPECT_GT(drawn, 1000);
+    });
+}
+
+TEST(ProjectKernel, AgreesWithTheMap) {
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        const LocalDir w{random_direction(i, 1)};
+        const Point2 p = hemisphere_to_square(w);
+        const Corner c =
+            project_corner(w.v * uniform(i, 2, 0.1f, 10), Frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+        EXPECT_NEAR(c.x, p.x * mask_side, 0.01);
+        EXPECT_NEAR(c.y, p.y * mask_side, 0.01);
+    }
+}
+
+struct Drawing {
+    Mask open, covered;
+    std::vector<std::uint32_t> radiance = std::vector<std::uint32_t>(mask_bits + surfel_padding);
+    std::vector<std::uint32_t> direct = std::vector<std::uint32_t>(mask_bits + surfel_padding);
+};
+
+void draw_one(const BitRect& rect, const TexelRect& texels, const RecordTexture& texture, Drawing& out) {
+    const TexelSteps columns(texels.width, static_cast<std::uint32_t>(rect.width())),
+        rows(texels.height, static_cast<std::uint32_t>(rect.height()));
+    for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x) {
+            if (!out.open.test(x, y)) continue;
+            const std::uint32_t v = texels.v + rows(static_cast<std::uint32_t>(y - rect.y0)),
+                                u = texels.u + columns(static_cast<std::uint32_t>(x - rect.x0));
+            const auto at = static_cast<std::size_t>(y * mask_side + x);
+            out.radiance[at] = texture.radiance[v * texture.side + u];
+            out.direct[at] = texture.direct[v * texture.side + u];
+            Mask bit;
+            bit.fill({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(x + 1),
+                      static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(y + 1)});
+            out.open = out.open & ~bit;
+            out.covered = out.covered | bit;
+        }
+}
+
+TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
+    constexpr std::size_t side = 64;
+    std::vector<std::uint32_t> texture(side * side + surfel_padding), direct = texture;
+    for (std::size_t i = 0; i < side * side; ++i) {
+        texture[i] = static_cast<std::uint32_t>(hash(i, 1)) | 1;
+        direct[i] = static_cast<std::uint32_t>(hash(i, 2)) | 1;
+    }
+    const RecordTexture record{texture, direct, side};
+    std::vector<BitRect> masks;
+    std::vector<TexelRect> texels;
+    for (std::uint64_t i = 0; i < 120; ++i) {
+        const auto byte = [&](std::uint64_t what, float low, float high) {
+            return static_cast<std::uint8_t>(uniform(i, what, low, high));
+        };
+        const float widest = i % 4 == 0 ? 128.0f : i % 4 == 1 ? 5.0f : 20.0f;
+        const std::uint8_t x0 = byte(1, 0, 128), y0 = byte(2, 0, 128);
+        masks.push_back({x0, static_cast<std::uint8_t>(std::min(128.0f, x0 + uniform(i, 3, 0, widest))), y0,
+                         static_cast<std::uint8_t>(std::min(128.0f, y0 + uniform(i, 4, 0, 12)))});
+        const bool dot = i % 3 == 0;
+        texels.push_back({byte(5, 0, 56), byte(6, 0, 56), dot ? std::uint8_t{1} : byte(7, 1, 9),
+                          dot ? std::uint8_t{1} : byte(8, 1, 9)});
+    }
+    Drawing expected;
+    expected.open.fill({3, 120, 5, 128});
+    for (std::size_t i = 0; i < masks.size(); ++i) draw_one(masks[i], texels[i], record, expected);
+    ASSERT_GT(expected.covered.count(), mask_bits / 3);
+    on_every_target([&] {
+        for (const bool with_direct : {false, true}) {
+            Drawing out;
+            out.open.fill({3, 120, 5, 128});
+            EXPECT_TRUE(draw_surfels(masks, texels, record,
+                                     {out.open, out.covered, out.radiance,
+                                      with_direct ? std::span(out.direct) : std::span<std::uint32_t>()}));
+            EXPECT_EQ(out.open, expected.open);
+            EXPECT_EQ(out.covered, expected.covered);
+            EXPECT_EQ(out.radiance, expected.radiance);
+            EXPECT_TRUE(!with_direct || out.direct == expected.direct);
+            EXPECT_FALSE(draw_surfels(std::span(masks).first(0), texels, record,
+                                      {out.open, out.covered, out.radiance, {}}));
+        }
+    });
+}
+
+Vertex vertex_of(const Bsdf& bsdf, LocalDir w_out) {
+    Vertex vertex{{}, w_out, bsdf};
+    vertex.point.frame = frame_around(normalize({0.1f, 0.3f, 1}));
+    return vertex;
+}
+
+TEST(ReceiverBsdfKernel, AgreesWithTheBsdfsOnEveryTarget) {
+    const Ggx sharp{0.05f, Masking::correlated}, rough{0.6f, Masking::separable};
+    MetallicRoughness plastic{{0.5f, 0.2f, 0.1f}, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f},
+                              Spectrum{1},        rough,           false};
+    MetallicRoughness coat_alone = plastic;
+    coat_alone.smooth = true;
+    const std::array<Bsdf, 5> bsdfs{Lambert{{0.7f, 0.5f, 0.2f}}, RoughConductor{{0.9f, 0.6f, 0.3f}, sharp},
+                                    RoughConductor{{0.9f, 0.6f, 0.3f}, rough}, plastic,
+                                    without_delta(coat_alone)};
+    constexpr std::size_t count = 1003;  // no multiple of any number of lanes
+    const Frame receiver = frame_around({0, 0, 1});
+    on_every_target([&] {
+        for (const Bsdf& bsdf : bsdfs)
+            for (std::uint64_t view = 0; view < 5; ++view) {
+                const Vertex vertex =
+                    vertex_of(bsdf, {normalize(Vec3{0, 0, 0.1f}
+                                               + Vec3{uniform(view, 1, -1, 1), uniform(view, 2, -1, 1),
+                                                      uniform(view, 3, 0, 1)})});
+                const auto b = receiver_bsdf(vertex, receiver);
+                ASSERT_TRUE(b.has_value());
+                std::vector<float> x(count), y(count), z(count), red(count), green(count), blue(count);
+                for (std::size_t i = 0; i < count; ++i) {
+                    const Vec3 w = random_direction(i, 50);
+                    x[i] = w.x;
+                    y[i] = w.y;
+                    z[i] = w.z;
+                }
+                evaluate(*b, {x, y, z}, {red, green, blue});
+                for (std::size_t i = 0; i < count; ++i) {
+                    const LocalDir w_in =
+                        vertex.point.frame.to_local(receiver.to_world({{x[i], y[i], z[i]}}));
+                    const Spectrum expected = eval(bsdf, vertex.w_out, w_in);
+                    if (std::abs(w_in.v.z) < 1e-5f) continue;  // rounding decides which side that is
+                    // Half vectors of sharp lobes lose digits in either formula.
+                    ASSERT_NEAR(red[i], expected.r, 2e-4f * expected.r + 1e-7f) << i;
+                    ASSERT_NEAR(green[i], expected.g, 2e-4f * expected.g + 1e-7f) << i;
+                    ASSERT_NEAR(blue[i], expected.b, 2e-4f * expected.b + 1e-7f) << i;
+                }
+            }
+    });
+    EXPECT_FALSE(
+        receiver_bsdf(vertex_of(RoughDielectric{1.5f, Spectrum{1}, false, rough}, {{0, 0, 1}}), receiver)
+            .has_value());
+}
+
+TEST(CellSumKernel, AgreesWithItsDefinitionOnEveryTarget) {
+    constexpr std::size_t cells = mask_bits / 4, side = mask_side / 2;
+    std::vector<std::uint32_t> radiance(mask_bits);
+    std::vector<float> r(cells), g(cells), b(cells);
+    for (std::size_t i = 0; i < radiance.size(); ++i)
+        if (i % 7 != 0)
+            radiance[i] = pack_rgbe({uniform(i, 1, 0, 5), uniform(i, 2, 0, 1), uniform(i, 3, 0, 1e-3f)});
+    for (std::size_t i = 0; i < cells; ++i)
+        r[i] = uniform(i, 4, 0, 1), g[i] = uniform(i, 5, 0, 1), b[i] = uniform(i, 6, 0, 1);
+    Spectrum expected;
+    std::vector<float> products(cells);
+    for (std::size_t i = 0; i < cells; ++i) {
+        const std::size_t bit = i / side * 2 * mask_side + i % side * 2;
+        const Spectrum sum = unpack_rgbe(radiance[bit]) + unpack_rgbe(radiance[bit + 1])
+                             + unpack_rgbe(radiance[bit + mask_side])
+                             + unpack_rgbe(radiance[bit + mask_side + 1]);
+        expected += sum * Spectrum{r[i], g[i], b[i]};
+        products[i] = luminance(sum * Spectrum{r[i], g[i], b[i]});
+    }
+    on_every_target([&] {
+        std::vector<float> found(cells);
+        const Spectrum sum = sum_cells(radiance, {r, g, b}, found);
+        EXPECT_NEAR(sum.r, expected.r, 1e-4f * expected.r);
+        EXPECT_NEAR(sum.g, expected.g, 1e-4f * expected.g);
+        EXPECT_NEAR(sum.b, expected.b, 1e-4f * expected.b);
+        EXPECT_EQ(sum, sum_cells(radiance, {r, g, b}, {}));
+        for (std::size_t i = 0; i < cells; ++i)
+            ASSERT_NEAR(found[i], products[i], 1e-5f * products[i] + 1e-9f);
+    });
+}
+
+}  // namespace
+}  // namespace relumine

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bit masks over the receiver's square: 128 × 128 bits, whole rows at a time [V, §3.3–3.4].
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace relumine {
+
+inline constexpr int mask_side = 128;
+inline constexpr int mask_bits = mask_side * mask_side;
+
+/// 128 bits; bit x of the row is bit x of `low`, or bit x − 64 of `high`.
+struct MaskRow {
+    std::uint64_t low = 0, high = 0;
+
+    friend constexpr MaskRow operator&(MaskRow a, MaskRow b) { return {a.low & b.low, a.high & b.high}; }
+    friend constexpr MaskRow operator|(MaskRow a, MaskRow b) { return {a.low | b.low, a.high | b.high}; }
+    friend constexpr MaskRow operator~(MaskRow a) { return {~a.low, ~a.high}; }
+    bool operator==(const MaskRow&) const = default;
+
+    [[nodiscard]] constexpr bool any() const { return (low | high) != 0; }
+    [[nodiscard]] constexpr bool test(int x) const {
+        return ((x < 64 ? low >> x : high >> (x - 64)) & 1) != 0;
+    }
+    [[nodiscard]] constexpr int count() const { return std::popcount(low) + std::popcount(high); }
+    /// `length` ≤ 32 bits from bit x on; bits past the row's end are 0.
+    [[nodiscard]] constexpr std::uint32_t bits(int x, int length) const {
+        const std::uint64_t from = x >= 64  ? high >> (x - 64)
+                                   : x == 0 ? low
+                                            : (low >> x) | (high << (64 - x));
+        return static_cast<std::uint32_t>(from & ((std::uint64_t{1} << length) - 1));
+    }
+};
+
+namespace detail {
+inline constexpr auto rows_of_bits_below = [] {
+    std::array<MaskRow, mask_side + 1> rows{};
+    for (std::size_t x = 0; x < mask_side; ++x) {
+        rows[x + 1] = rows[x];
+        (x < 64 ? rows[x + 1].low : rows[x + 1].high) |= std::uint64_t{1} << x % 64;
+    }
+    return rows;
+}();
+}  // namespace detail
+
+/// The bits below x, x in [0, 128].
+constexpr const MaskRow& bits_below(int x) { return detail::rows_of_bits_below[static_cast<std::size_t>(x)]; }
+
+/// The bits x0 ≤ x < x1.
+constexpr MaskRow bit_span(int x0, int x1) { return bits_below(x1) & ~bits_below(x0); }
+
+/// A half-open rectangle of bits inside the mask.
+struct BitRect {
+    std::uint8_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+
+    [[nodiscard]] constexpr bool empty() const { return x0 >= x1 || y0 >= y1; }
+    [[nodiscard]] constexpr int width() const { return x1 - x0; }
+    [[nodiscard]] constexpr int height() const { return y1 - y0; }
+    bool operator==(const BitRect&) const = default;
+};
+
+struct alignas(64) Mask {
+    std::array<MaskRow, mask_side> rows{};
+
+    [[nodiscard]] bool test(int x, int y) const { return rows[static_cast<std::size_t>(y)].test(x); }
+    [[nodiscard]] int count() const {
+        int sum = 0;
+        for (const MaskRow& row : rows) sum += row.count();
+        return sum;
+    }
+    void fill(const BitRect& rect) {
+        if (rect.empty()) return;
+        const MaskRow span = bit_span(rect.x0, rect.x1);
+        for (std::size_t y = rect.y0; y < rect.y1; ++y) rows[y] = rows[y] | span;
+    }
+    friend Mask operator&(const Mask& a, const Mask& b) {
+        Mask out;
+        for (std::size_t y = 0; y < mask_side; ++y) out.rows[y] = a.rows[y] & b.rows[y];
+        return out;
+    }
+    friend Mask operator|(const Mask& a, const Mask& b) {
+        Mask out;
+        for (std::size_t y = 0; y < mask_side; ++y) out.rows[y] = a.rows[y] | b.rows[y];
+        return out;
+    }
+    friend Mask operator~(const Mask& a) {
+        Mask out;
+        for (std::size_t y = 0; y < mask_side; ++y) out.rows[y] = ~a.rows[y];
+        return out;
+    }
+    bool operator==(const Mask&) const = default;
+};
+
+}  // namespace relumine

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// The projection kernel. Sums and products stay apart (no fused multiply-add), so that every target rounds
+// alike.
+#include "cache/project_kernel.hpp"
+
+#include "cache/hemisphere_map.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cache/project_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::CappedTag<float, surfel_padding>;
+using I = hn::Rebind<std::int32_t, F>;
+using U = hn::Rebind<std::uint32_t, F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+using VU = hn::Vec<U>;
+
+HWY_INLINE VF multiply_add(VF a, VF b, VF c) { return hn::Add(hn::Mul(a, b), c); }
+
+struct Vec3s {
+    VF x, y, z;
+};
+HWY_INLINE VF dot(const Vec3s& a, Vec3 b) {
+    const F f;
+    return hn::Add(hn::Add(hn::Mul(a.x, hn::Set(f, b.x)), hn::Mul(a.y, hn::Set(f, b.y))),
+                   hn::Mul(a.z, hn::Set(f, b.z)));
+}
+
+struct SquarePoint {
+    VF x, y, cosine;  // bits; of the angle to the normal
+};
+
+HWY_INLINE VF octant_of(VF x) {
+    const F f;
+    const VF x2 = hn::Mul(x, x);
+    VF sum = hn::Set(f, octant_polynomial.back());
+    for (std::size_t i = octant_polynomial.size() - 1; i-- > 0;)
+        sum = multiply_add(sum, x2, hn::Set(f, octant_polynomial[i]));
+    return hn::Mul(sum, x);
+}
+
+/// hemisphere_to_square of a vector that need not be unit, in bits.
+HWY_INLINE SquarePoint to_square(const Vec3s& q, const Frame& frame) {
+    const F f;
+    const Vec3s w{dot(q, frame.s), dot(q, frame.t), dot(q, frame.n)};
+    const VF length2 = hn::Add(hn::Add(hn::Mul(w.x, w.x), hn::Mul(w.y, w.y)), hn::Mul(w.z, w.z));
+    const VF length = hn::Sqrt(length2), ax = hn::Abs(w.x), ay = hn::Abs(w.y);
+    const auto x_major = hn::Ge(ax, ay);
+    const VF major = hn::Max(hn::Max(ax, ay), hn::Mul(length, hn::Set(f, 1e-12f)));
+    // One division for two: 1 / length and minor / major.
+    const VF inverse = hn::Div(hn::Set(f, 1), hn::Max(hn::Mul(length, major), hn::Set(f, 1e-37f)));
+    const VF cosine = hn::Mul(w.z, hn::Mul(major, inverse));
+    const VF r = hn::Sqrt(hn::Max(hn::Zero(f), hn::Sub(hn::Set(f, 1), cosine)));
+    const VF ratio = hn::Min(hn::Mul(hn::Min(ax, ay), hn::Mul(length, inverse)), hn::Set(f, 1));
+    const VF across = hn::Mul(r, octant_of(ratio));
+    const VF half_side = hn::Set(f, 0.5f * mask_side);
+    const auto bits = [&](VF magnitude, VF sign) {
+        return multiply_add(half_side, hn::CopySign(magnitude, sign), half_side);
+    };
+    return {bits(hn::IfThenElse(x_major, r, across), w.x), bits(hn::IfThenElse(x_major, across, r), w.y),
+            cosine};
+}
+
+struct Box {
+    VF x0, x1, y0, y1;  // bits
+};
+
+HWY_INLINE Box bounds(const SquarePoint (&p)[4]) {
+    const auto least = [](VF a, VF b, VF c, VF d) { return hn::Min(hn::Min(a, b), hn::Min(c, d)); };
+    const auto most = [](VF a, VF b, VF c, VF d) { return hn::Max(hn::Max(a, b), hn::Max(c, d)); };
+    return {least(p[0].x, p[1].x, p[2].x, p[3].x), most(p[0].x, p[1].x, p[2].x, p[3].x),
+            least(p[0].y, p[1].y, p[2].y, p[3].y), most(p[0].y, p[1].y, p[2].y, p[3].y)};
+}
+
+HWY_INLINE Box enclosing(const Box& a, const Box& b) {
+    return {hn::Min(a.x0, b.x0), hn::Max(a.x1, b.x1), hn::Min(a.y0, b.y0), hn::Max(a.y1, b.y1)};
+}
+
+HWY_INLINE Box choose(hn::Mask<F> first, const Box& a, const Box& b) {
+    return {hn::IfThenElse(first, a.x0, b.x0), hn::IfThenElse(first, a.x1, b.x1),
+            hn::IfThenElse(first, a.y0, b.y0), hn::IfThenElse(first, a.y1, b.y1)};
+}
+
+/// The first bit whose centre is not before `edge`.
+HWY_INLINE VU first_bit(VF edge) {
+    const F f;
+    const VF bit = hn::Ceil(hn::Sub(edge, hn::Set(f, 0.5f)));
+    const VF inside = hn::Min(hn::Max(bit, hn::Zero(f)), hn::Set(f, mask_side));
+    return hn::BitCast(U(), hn::ConvertTo(I(), inside));
+}
+
+/// As the four bytes of BitRect.
+HWY_INLINE VU pack(const Box& box) {
+    const VU x = hn::Or(first_bit(box.x0), hn::ShiftLeft<8>(first_bit(box.x1)));
+    const VU y = hn::Or(first_bit(box.y0), hn::ShiftLeft<8>(first_bit(box.y1)));
+    return hn::Or(x, hn::ShiftLeft<16>(y));
+}
+
+HWY_INLINE Vec3s corner(const Surfels& surfels, std::size_t at, std::size_t number) {
+    const F f;
+    const hn::Rebind<hwy::float16_t, F> h;
+    const auto plane = [&](std::size_t axis) {
+        const std::uint16_t* halves = &surfels.corners[(3 * number + axis) * surfels.stride + at];
+        return hn::Mul(hn::PromoteTo(f, hn::LoadU(h, reinterpret_cast<const hwy::float16_t*>(halves))),
+                       hn::Set(f, surfels.scale));
+    };
+    return {plane(0), plane(1), plane(2)};
+}
+
+HWY_INLINE Vec3s shifted(const Vec3s& q, Vec3 shift) {
+    const F f;
+    return {hn::Add(q.x, hn::Set(f, shift.x)), hn::Add(q.y, hn::Set(f, shift.y)),
+            hn::Add(q.z, hn::Set(f, shift.z))};
+}
+
+/// The surfels' rectangles of texels, in bits.
+HWY_INLINE Box texel_box(const Surfels& surfels, std::size_t at, float bits_per_texel) {
+    const F f;
+    const VU packed = hn::LoadU(U(), reinterpret_cast<const std::uint32_t*>(&surfels.texels[at]));
+    const VF scale = hn::Set(f, bits_per_texel);
+    const auto byte = [&](VU shifted_down) {
+        return hn::Mul(hn::ConvertTo(f, hn::BitCast(I(), hn::And(shifted_down, hn::Set(U(), 255)))), scale);
+    };
+    const VF x0 = byte(packed), y0 = byte(hn::ShiftRight<8>(packed));
+    return {x0, hn::Add(x0, byte(hn::ShiftRight<16>(packed))), y0,
+            hn::Add(y0, byte(hn::ShiftRight<24>(packed)))};
+}
+
+HWY_INLINE hn::Mask<F> above_horizon(const SquarePoint (&p)[4]) {
+    return hn::Gt(hn::Max(hn::Max(p[0].cosine, p[1].cosine), hn::Max(p[2].cosine, p[3].cosine)),
+                  hn::Zero(F()));
+}
+
+/// Whether corners run the same way round as in the record, and the surfel does not look too large.
+HWY_INLINE hn::Mask<F> usable(const SquarePoint (&p)[4], const Box& box, const Box& texels) {
+    const F f;
+    const VF ux = hn::Sub(p[3].x, p[0].x), uy = hn::Sub(p[3].y, p[0].y);
+    const VF vx = hn::Sub(p[1].x, p[2].x), vy = hn::Sub(p[1].y, p[2].y);
+    const auto faces = hn::Gt(hn::Sub(hn::Mul(vx, uy), hn::Mul(vy, ux)), hn::Zero(f));
+    const auto allowed = [&](VF low, VF high) {
+        return multiply_add(hn::Sub(high, low), hn::Set(f, largest_growth), hn::Set(f, growth_margin));
+    };
+    const auto fits = hn::And(hn::Le(hn::Sub(box.x1, box.x0), allowed(texels.x0, texels.x1)),
+                              hn::Le(hn::Sub(box.y1, box.y0), allowed(texels.y0, texels.y1)));
+    return hn::And(faces, fits);
+}
+
+void project(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
+             BitRect* masks, BitRect* trails) {
+    const U u;
+    const float bits_per_texel = static_cast<float>(mask_side) / static_cast<float>(projection.side);
+    for (std::size_t i = begin; i < end; i += hn::Lanes(u)) {
+        SquarePoint now[4], before[4];
+        for (std::size_t c = 0; c < 4; ++c) {
+            const Vec3s q = corner(surfels, i, c);
+            now[c] = to_square(shifted(q, projection.shift), projection.frame);
+            if (projection.rotated) before[c] = to_square(q, projection.frame);
+        }
+        const Box texels = texel_box(surfels, i, bits_per_texel), mask = bounds(now);
+        const Box old = projection.rotated ? bounds(before) : texels;
+        const auto above = above_horizon(now), used = hn::And(above, usable(now, mask, texels));
+        hn::StoreU(hn::IfThenElseZero(hn::RebindMask(u, used), pack(mask)), u,
+                   reinterpret_cast<std::uint32_t*>(masks + (i - begin)));
+        hn::StoreU(pack(choose(above, enclosing(old, mask), old)), u,
+                   reinterpret_cast<std::uint32_t*>(trails + (i - begin)));
+    }
+}
+
+}  // namespace
+}  // namespace relumine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine {
+
+HWY_EXPORT(project);
+
+void project_surfels(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
+                     std::span<BitRect> masks, std::span<BitRect> trails) {
+    HWY_DYNAMIC_DISPATCH(project)(surfels, begin, end, projection, masks.data(), trails.data());
+}
+
+}  // namespace relumine
+#endif

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The BSDF of a receiver, times the cosine, over its square.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "cache/mask.hpp"
+#include "radiance/transport.hpp"
+
+namespace relumine {
+
+/// A reflecting BSDF seen from one side, in numbers that a kernel evaluates: a diffuse base under a coat and
+/// one GGX lobe. Lambert, RoughConductor and MetallicRoughness are such.
+struct ReceiverBsdf {
+    Spectrum diffuse;
+    Spectrum coat_f0, coat_f90;
+    Spectrum specular_f0, specular_f90;
+    Ggx ggx;
+    bool coated = false, specular = false;
+    LocalDir w_out;                        // in the shading frame
+    Vec3 shading_x, shading_y, shading_z;  // the shading frame's axes in the receiver's frame
+};
+
+/// Empty for BSDFs that transmit: their light does not come from the receiver's hemisphere alone.
+[[nodiscard]] std::optional<ReceiverBsdf> receiver_bsdf(const Vertex& vertex, const Frame& receiver);
+
+/// Directions in the receiver's frame, one array per axis.
+struct Directions {
+    std::span<const float> x, y, z;
+};
+struct SpectrumArrays {
+    std::span<float> r, g, b;
+};
+
+/// f·|cos θ|, 1/sr, for every direction; 0 below the shading hemisphere. Relative error against
+/// eval(const Bsdf&, …): 1e-5.
+void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out);
+
+}  // namespace relumine

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// The BSDF kernel: the formulas of shading/metallic_roughness.cpp for as many directions as the machine has
+// lanes.
+#include "cache/receiver_bsdf.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cache/receiver_bsdf_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::ScalableTag<float>;
+using VF = hn::Vec<F>;
+
+HWY_INLINE VF constant(float x) { return hn::Set(F(), x); }
+HWY_INLINE VF squared(VF x) { return hn::Mul(x, x); }
+
+struct Vec3s {
+    VF x, y, z;
+};
+HWY_INLINE VF dot(const Vec3s& a, Vec3 b) {
+    return hn::MulAdd(a.x, constant(b.x), hn::MulAdd(a.y, constant(b.y), hn::Mul(a.z, constant(b.z))));
+}
+
+struct Spectrums {
+    VF r, g, b;
+};
+/// Schlick's Fresnel from (1 − cos)⁵.
+HWY_INLINE Spectrums schlick(Spectrum f0, Spectrum f90, VF grazing) {
+    const auto channel = [&](float at0, float at90) {
+        return hn::MulAdd(constant(at90 - at0), grazing, constant(at0));
+    };
+    return {channel(f0.r, f90.r), channel(f0.g, f90.g), channel(f0.b, f90.b)};
+}
+
+/// What does not depend on w_in.
+struct Prepared {
+    const ReceiverBsdf& b;
+    float a2, lambda_out, scale;  // of the specular lobe: D·G without what follows from w_in
+
+    explicit Prepared(const ReceiverBsdf& bsdf) : b(bsdf), a2(sqr(bsdf.ggx.alpha)) {
+        const Vec3 o = b.w_out.v;
+        lambda_out = 0.5f * (std::sqrt(1 + a2 * (sqr(o.x) + sqr(o.y)) / sqr(o.z)) - 1);
+        scale = a2 * inv_pi / (4 * o.z);
+    }
+};
+
+/// D·G / (4 cos θ_out) at the half vector with these squared components, not yet divided by the squared
+/// length.
+HWY_INLINE VF lobe(const Prepared& p, const Vec3s& w, VF m_xy2, VF m_z2, VF length2) {
+    const VF density_root = hn::MulAdd(constant(p.a2), m_z2, m_xy2);
+    const VF density = hn::Div(hn::Mul(constant(p.scale), squared(length2)), squared(density_root));
+    const VF z2 = squared(w.z), xy2 = hn::MulAdd(w.x, w.x, squared(w.y));
+    const VF root = hn::Sqrt(hn::MulAdd(constant(p.a2), xy2, z2));
+    const VF lambda_in = hn::MulSub(constant(0.5f), hn::Div(root, w.z), constant(0.5f));
+    const VF masking = p.b.ggx.masking == Masking::correlated
+                           ? hn::Add(constant(1 + p.lambda_out), lambda_in)
+                           : hn::Mul(constant(1 + p.lambda_out), hn::Add(constant(1), lambda_in));
+    return hn::Div(density, masking);
+}
+
+HWY_INLINE Spectrums reflect(const Prepared& p, const Vec3s& w) {
+    const ReceiverBsdf& b = p.b;
+    const VF cosine = hn::Mul(w.z, constant(inv_pi));
+    if (!b.specular && !b.coated)
+        return {hn::Mul(cosine, constant(b.diffuse.r)), hn::Mul(cosine, constant(b.diffuse.g)),
+                hn::Mul(cosine, constant(b.diffuse.b))};
+    const Vec3s m{hn::Add(w.x, constant(b.w_out.v.x)), hn::Add(w.y, constant(b.w_out.v.y)),
+                  hn::Add(w.z, constant(b.w_out.v.z))};
+    const VF m_xy2 = hn::MulAdd(m.x, m.x, squared(m.y)), m_z2 = squared(m.z);
+    const VF length2 = hn::Max(hn::Add(m_xy2, m_z2), constant(1e-20f));
+    // |w_out + w_in| / 2 = cos of the angle between either and the half vector
+    const VF x = hn::Max(hn::NegMulAdd(hn::Sqrt(length2), constant(0.5f), constant(1)), constant(0));
+    const VF grazing = hn::Mul(squared(squared(x)), x);
+    VF base = cosine;
+    if (b.coated) {
+        const Spectrums coat = schlick(b.coat_f0, b.coat_f90, grazing);
+        const VF most = hn::Max(coat.r, hn::Max(coat.g, coat.b));
+        base = hn::Mul(base, hn::Max(hn::Sub(constant(1), most), constant(0)));
+    }
+    Spectrums out{hn::Mul(base, constant(b.diffuse.r)), hn::Mul(base, constant(b.diffuse.g)),
+                  hn::Mul(base, constant(b.diffuse.b))};
+    if (!b.specular) return out;
+    const VF specular = lobe(p, w, m_xy2, m_z2, length2);
+    const Spectrums fresnel = schlick(b.specular_f0, b.specular_f90, grazing);
+    return {hn::MulAdd(specular, fresnel.r, out.r), hn::MulAdd(specular, fresnel.g, out.g),
+            hn::MulAdd(specular, fresnel.b, out.b)};
+}
+
+HWY_INLINE Spectrums above_horizon(const Prepared& p, const Vec3s& direction) {
+    const Vec3s w{dot(direction, p.b.shading_x), dot(direction, p.b.shading_y),
+                  dot(direction, p.b.shading_z)};
+    const auto above = hn::Gt(w.z, constant(0));
+    const Spectrums s = reflect(p, {w.x, w.y, hn::Max(w.z, constant(1e-7f))});
+    return {hn::IfThenElseZero(above, s.r), hn::IfThenElseZero(above, s.g), hn::IfThenElseZero(above, s.b)};
+}
+
+void evaluate_all(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
+    const F f;
+    const Prepared prepared(bsdf);
+    const std::size_t lanes = hn::Lanes(f), count = w_in.x.size(), whole = count / lanes * lanes;
+    std::size_t i = 0;
+    for (; i < whole; i += lanes) {
+        const Spectrums s = above_horizon(
+            prepared, {hn::LoadU(f, &w_in.x[i]), hn::LoadU(f, &w_in.y[i]), hn::LoadU(f, &w_in.z[i])});
+        hn::StoreU(s.r, f, &out.r[i]);
+        hn::StoreU(s.g, f, &out.g[i]);
+        hn::StoreU(s.b, f, &out.b[i]);
+    }
+    for (; i < count; ++i) {
+        const Spectrums s =
+            above_horizon(prepared, {constant(w_in.x[i]), constant(w_in.y[i]), constant(w_in.z[i])});
+        out.r[i] = hn::GetLane(s.r);
+        out.g[i] = hn::GetLane(s.g);
+        out.b[i] = hn::GetLane(s.b);
+    }
+}
+
+}  // namespace
+}  // namespace relumine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine {
+
+HWY_EXPORT(evaluate_all);
+
+void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
+    HWY_DYNAMIC_DISPATCH(evaluate_all)(bsdf, w_in, out);
+}
+
+}  // namespace relumine
+#endif

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reprojection loop: whole rows of bits at a time.
+#include "cache/reproject.hpp"
+
+#include "cache/draw_kernel.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr float same_normals = 1 - 1e-7f;  // cosine
+
+class RecordReprojector {
+  public:
+    RecordReprojector(const Record& record, Reprojection& out) : record_(record), out_(out) {
+        for (std::size_t y = 0; y < mask_side; ++y) open_.rows[y] = ~out.covered.rows[y];
+    }
+
+    void run() {
+        const Surfels& s = record_.surfels;
+        for (std::size_t layer = 0; layer < s.layers(); ++layer) {
+            const bool at_infinity = layer + 1 == s.layers();
+            cover(s.layer_begin[layer], s.layer_begin[layer + 1]);
+            if (!at_infinity) close_trails(s.layer_begin[layer], s.layer_begin[layer + 1]);
+        }
+        for (std::size_t y = 0; y < mask_side; ++y)
+            out_.unknown.rows[y] = out_.unknown.rows[y] & ~out_.covered.rows[y];
+    }
+
+  private:
+    void cover(std::size_t begin, std::size_t end) {
+        const std::size_t count = end - begin;
+        const RecordTexture texture{record_.radiance,
+                                    record_.direct.empty() ? record_.radiance : record_.direct,
+                                    static_cast<std::size_t>(record_.side)};
+        const bool any = draw_surfels(std::span(out_.masks).subspan(begin, count),
+                                      std::span(record_.surfels.texels).subspan(begin, count), texture,
+                                      {open_, out_.covered, out_.radiance, out_.direct});
+        out_.layers += any ? 1 : 0;
+    }
+
+    /// What the move has opened behind this layer: farther layers must not fill it.
+    void close_trails(std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const BitRect &trail = out_.trails[i], &mask = out_.masks[i];
+            if (trail.empty() || trail == mask) continue;
+            const MaskRow span = bit_span(trail.x0, trail.x1);
+            for (std::size_t y = trail.y0; y < trail.y1; ++y) {
+                out_.unknown.rows[y] = out_.unknown.rows[y] | span;
+                open_.rows[y] = open_.rows[y] & ~span;
+            }
+        }
+    }
+
+    const Record& record_;
+    Reprojection& out_;
+    Mask open_;  // neither covered nor unknown
+};
+
+}  // namespace
+
+Frame receiver_frame(const Frame& record_frame, Vec3 normal) {
+    const float cosine = dot(record_frame.n, normal);
+    if (cosine > same_normals) return record_frame;
+    // Rodrigues' rotation that takes the one normal to the other, applied to a tangent.
+    const Vec3 axis = cross(record_frame.n, normal);
+    const Vec3 s = record_frame.s * cosine + cross(axis, record_frame.s)
+                   + axis * (dot(axis, record_frame.s) / std::max(1 + cosine, 1e-3f));
+    const Vec3 tangent = normalize(s - normal * dot(s, normal));
+    return {tangent, cross(normal, tangent), normal};
+}
+
+void Reprojection::clear(bool with_direct) {
+    covered = unknown = Mask{};
+    radiance.assign(mask_bits + surfel_padding, 0);
+    if (with_direct)
+        direct.assign(mask_bits + surfel_padding, 0);
+    else
+        direct.clear();
+    records = layers = 0;
+}
+
+void reproject(const Record& record, const Receiver& receiver, Reprojection& out) {
+    const Surfels& s = record.surfels;
+    if (out.masks.size() < s.count + surfel_padding) {
+        out.masks.resize(s.count + surfel_padding);
+        out.trails.resize(s.count + surfel_padding);
+    }
+    const bool rotated = !(receiver.frame.s == record.frame.s && receiver.frame.n == record.frame.n);
+    const Projection moved{receiver.frame, record.position - receiver.position, rotated, record.side};
+    const Projection turned{receiver.frame, {}, false, record.side};
+    const std::size_t infinity_begin = s.infinity_begin();
+    project_surfels(s, 0, infinity_begin, moved, out.masks, out.trails);
+    project_surfels(s, infinity_begin, s.count, turned, std::span(out.masks).subspan(infinity_begin),
+                    std::span(out.trails).subspan(infinity_begin));
+    out.unknown = Mask{};
+    RecordReprojector(record, out).run();
+    ++out.records;
+}
+
+}  // namespace relumine

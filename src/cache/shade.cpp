@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tabulating BSDFs and summing reflected light.
+#include "cache/shade.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/rgbe.hpp"
+#include "cache/cell_sum_kernel.hpp"
+#include "cache/hemisphere_map.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr std::size_t fine_points = 16;  // per fine cell: 4 in each of its bits
+constexpr float narrow_lobe = 0.3f;      // GGX alpha; wider lobes vary little within a cell
+constexpr float greatest_curvature =
+    0.3f;  // of the BSDF over a cell, against its value, before the cell counts as fine
+
+struct DirectionTable {
+    std::vector<float> x, y, z;
+
+    explicit DirectionTable(std::size_t count) : x(count), y(count), z(count) {}
+    void set(std::size_t i, LocalDir w) {
+        x[i] = w.v.x;
+        y[i] = w.v.y;
+        z[i] = w.v.z;
+    }
+    [[nodiscard]] Directions span(std::size_t first, std::size_t count) const {
+        return {{&x[first], count}, {&y[first], count}, {&z[first], count}};
+    }
+};
+
+/// Directions through the centres of the cells.
+const DirectionTable& cell_centers() {
+    static const DirectionTable table = [] {
+        DirectionTable t(cell_count);
+        for (std::size_t i = 0; i < cell_count; ++i) {
+            const auto x = static_cast<float>(i % cell_side), y = static_cast<float>(i / cell_side);
+            t.set(i, square_to_hemisphere({(x + 0.5f) / cell_side, (y + 0.5f) / cell_side}));
+        }
+        return t;
+    }();
+    return table;
+}
+
+/// Directions through 4 × 4 points of each cell, cell by cell and bit by bit.
+const DirectionTable& fine_directions() {
+    static const DirectionTable table = [] {
+        DirectionTable t(cell_count * fine_points);
+        for (std::size_t i = 0; i < cell_count * fine_points; ++i) {
+            const std::size_t cell = i / fine_points, bit = i / 4 % 4, point = i % 4;
+            const auto along = [&](std::size_t cell_index, std::size_t bit_index, std::size_t point_index) {
+                const auto quarter = static_cast<float>(2 * bit_index + point_index) + 0.5f;
+                return (static_cast<float>(cell_index) + quarter / 4) / cell_side;
+            };
+            t.set(i, square_to_hemisphere({along(cell % cell_side, bit % 2, point % 2),
+                                           along(cell / cell_side, bit / 2, point / 2)}));
+        }
+        return t;
+    }();
+    return table;
+}
+
+/// How much the BSDF curves within a cell that is not at the border: |second differences| along both axes.
+float curvature(const float* f) {
+    const float center = 2 * f[0];
+    return std::abs(f[-1] - center + f[1]) + std::abs(f[-cell_side] - center + f[cell_side]);
+}
+
+/// Column by column, so that the sums do not wait for each other.
+float mean_of_cells(const std::vector<float>& f) {
+    std::array<float, cell_side> columns{};
+    for (std::size_t y = 0; y < cell_side; ++y)
+        for (std::size_t x = 0; x < cell_side; ++x) columns[x] += f[y * cell_side + x];
+    float sum = 0;
+    for (const float column : columns) sum += column;
+    return sum / static_cast<float>(cell_count);
+}
+
+/// Cells whose centre does not stand for their mean: its error is about a 24th of the curvature.
+void find_fine_cells(BsdfTable& table) {
+    const float noticeable = mean_of_cells(table.g);
+    std::array<float, cell_side> excess{};  // of a row's curvatures over what is allowed
+    for (std::size_t y = 1; y + 1 < cell_side; ++y) {
+        const float* row = &table.g[y * cell_side];
+        int found = 0;
+        for (std::size_t x = 1; x + 1 < cell_side; ++x) {
+            excess[x] = curvature(row + x) - greatest_curvature * (row[x] + noticeable);
+            found |= excess[x] > 0 ? 1 : 0;
+        }
+        for (std::size_t x = 1; found != 0 && x + 1 < cell_side; ++x)
+            if (excess[x] > 0) table.fine_cells.push_back(static_cast<std::uint32_t>(y * cell_side + x));
+    }
+}
+
+/// The fine cells' directions one after the other, so that one call of the kernel evaluates them all.
+Directions gather_fine_directions(BsdfTable& table, std::size_t count) {
+    const DirectionTable& all = fine_directions();
+    table.scratch.resize(6 * count);
+    const std::array planes{all.x.data(), all.y.data(), all.z.data()};
+    for (std::size_t axis = 0; axis < planes.size(); ++axis)
+        for (std::size_t i = 0; i < table.fine_cells.size(); ++i)
+            std::copy_n(planes[axis] + table.fine_cells[i] * fine_points, fine_points,
+                        &table.scratch[axis * count + i * fine_points]);
+    const std::span<const float> scratch(table.scratch);
+    return {scratch.subspan(0, count), scratch.subspan(count, count), scratch.subspan(2 * count, count)};
+}
+
+void refine(const ReceiverBsdf& bsdf, BsdfTable& table) {
+    const std::size_t count = table.fine_cells.size() * fine_points;
+    const Directions directions = gather_fine_directions(table, count);
+    const std::span<float> out = std::span(table.scratch).subspan(3 * count);
+    const SpectrumArrays values{out.subspan(0, count), out.subspan(count, count),
+                                out.subspan(2 * count, count)};
+    evaluate(bsdf, directions, values);
+    for (std::size_t i = 0; i < count; i += 4) {
+        const auto mean = [&](std::span<const float> v) {
+            return 0.25f * ((v[i] + v[i + 1]) + (v[i + 2] + v[i + 3]));
+        };
+        table.fine_bits.emplace_back(mean(values.r), mean(values.g), mean(values.b));
+    }
+    for (const std::uint32_t cell : table.fine_cells) table.r[cell] = table.g[cell] = table.b[cell] = 0;
+}
+
+Spectrum fine_cell_sum(const std::vector<std::uint32_t>& radiance, const BsdfTable& table, std::size_t fine) {
+    const std::uint32_t cell = table.fine_cells[fine];
+    const std::size_t first_bit = cell / cell_side * 2 * mask_side + cell % cell_side * 2;
+    Spectrum sum;
+    for (std::size_t bit = 0; bit < 4; ++bit) {
+        const std::uint32_t packed = radiance[first_bit + bit / 2 * mask_side + bit % 2];
+        if (packed != 0) sum += unpack_rgbe(packed) * table.fine_bits[4 * fine + bit];
+    }
+    return sum;
+}
+
+Spectrum reflected(const std::vector<std::uint32_t>& radiance, const BsdfTable& table,
+                   std::span<float> products) {
+    Spectrum sum = sum_cells(radiance, {table.r, table.g, table.b}, products);
+    for (std::size_t fine = 0; fine < table.fine_cells.size(); ++fine) {
+        const Spectrum share = fine_cell_sum(radiance, table, fine);
+        if (!products.empty()) products[table.fine_cells[fine]] = luminance(share);
+        sum += share;
+    }
+    return sum;
+}
+
+}  // namespace
+
+void tabulate(const ReceiverBsdf& bsdf, BsdfTable& table) {
+    table.r.resize(cell_count);
+    table.g.resize(cell_count);
+    table.b.resize(cell_count);
+    table.fine_cells.clear();
+    table.fine_bits.clear();
+    evaluate(bsdf, cell_centers().span(0, cell_count), {table.r, table.g, table.b});
+    if (!bsdf.specular || bsdf.ggx.alpha >= narrow_lobe) return;
+    find_fine_cells(table);
+    refine(bsdf, table);
+}
+
+ReflectedRadiance shade(const Reprojection& incident, const BsdfTable& table, std::span<float> products) {
+    const Spectrum total = reflected(incident.radiance, table, products) * bit_solid_angle;
+    for (float& product : products) product *= bit_solid_angle;
+    if (incident.direct.empty()) return {total, total};
+    return {total, reflected(incident.direct, table, {}) * bit_solid_angle};
+}
+
+}  // namespace relumine

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Greedy merging: a texel grows to the right while it may, then down row by row.
+#include "cache/surfel_merge.hpp"
+
+#include <half.h>
+
+#include "cache/hemisphere_map.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr std::uint8_t taken = 0xff;  // instead of a layer: the texel belongs to a surfel already
+
+/// Corners may lie this much nearer or farther than the texel beside them: planes seen edge-on end somewhere.
+constexpr float nearest_corner = 0.7f, farthest_corner = 1.4f;
+
+std::uint16_t half_bits(float x) { return half(x).bits(); }
+
+class Merger {
+  public:
+    Merger(const std::vector<TexelSample>& texels, const DepthLayers& layers, const GatherPoint& point,
+           int side, const MergeLimits& limits)
+        : texels_(texels),
+          layers_(layers),
+          point_(point),
+          side_(side),
+          limits_(limits),
+          layer_(layers.layer_of_texel) {
+        const float texel_angle = std::sqrt(hemisphere_solid_angle) / static_cast<float>(side);
+        deviation_ = limits.reuse_distance > 0 ? texel_angle / (4 * limits.reuse_distance) : infinity;
+    }
+
+    Surfels merge() {
+        std::vector<std::vector<TexelRect>> by_layer(static_cast<std::size_t>(layers_.count) + 1);
+        for (int v = 0; v < side_; ++v)
+            for (int u = 0; u < side_; ++u)
+                if (const std::uint8_t layer = layer_[at(u, v)]; layer != taken)
+                    by_layer[layer].push_back(grow(u, v));
+        return pack(by_layer);
+    }
+
+  private:
+    [[nodiscard]] std::size_t at(int u, int v) const { return static_cast<std::size_t>(v * side_ + u); }
+
+    TexelRect grow(int u, int v) {
+        const std::size_t seed = at(u, v);
+        int width = 1, height = 1;
+        while (width < limits_.side && u + width < side_ && joins(seed, at(u + width, v))) ++width;
+        while (height < limits_.side && v + height < side_ && row_joins(seed, u, v + height, width)) ++height;
+        for (int y = v; y < v + height; ++y)
+            for (int x = u; x < u + width; ++x) layer_[at(x, y)] = taken;
+        const auto byte = [](int i) { return static_cast<std::uint8_t>(i); };
+        return {byte(u), byte(v), byte(width), byte(height)};
+    }
+
+    [[nodiscard]] bool row_joins(std::size_t seed, int u, int v, int width) const {
+        for (int x = u; x < u + width; ++x)
+            if (!joins(seed, at(x, v))) return false;
+        return true;
+    }
+
+    [[nodiscard]] bool joins(std::size_t seed, std::size_t other) const {
+        const TexelSample &a = texels_[seed], &b = texels_[other];
+        if (layer_[other] != layers_.layer_of_texel[seed]) return false;
+        if (a.distance == infinity) return true;
+        return dot(a.normal, b.normal) >= limits_.cos_normals
+               && std::abs(dot(a.normal, b.offset - a.offset)) <= deviation_ * sqr(b.distance);
+    }
+
+    [[nodiscard]] Surfels pack(const std::vector<std::vector<TexelRect>>& by_layer) const {
+        Surfels out;
+        out.scale =
+            layers_.farthest > 0 ? layers_.farthest / 1024 : 1;  // well inside the range of half floats
+        for (const auto& layer : by_layer) {
+            out.layer_begin.push_back(static_cast<std::uint32_t>(out.texels.size()));
+            out.texels.insert(out.texels.end(), layer.begin(), layer.end());
+        }
+        out.layer_begin.push_back(static_cast<std::uint32_t>(out.texels.size()));
+        out.count = out.stride = out.texels.size();
+        out.texels.resize(out.count + surfel_padding);
+        out.corners.resize(corner_planes * out.stride + surfel_padding);
+        for (std::size_t i = 0; i < out.count; ++i) put_corners(out, i);
+        return out;
+    }
+
+    void put_corners(Surfels& out, std::size_t i) const {
+        const TexelRect& r = out.texels[i];
+        const bool at_infinity = i >= out.infinity_begin();
+        for (int corner = 0; corner < 4; ++corner) {
+            const int right = corner & 1, down = corner >> 1;
+            const WorldDir direction = corner_direction(r.u + right * r.width, r.v + down * r.height);
+            const TexelSample& seed = texels_[at(r.u, r.v)];
+            const TexelSample& beside = texels_[at(r.u + right * (r.width - 1), r.v + down * (r.height - 1))];
+            const float reach = at_infinity ? 1 : corner_distance(seed, beside, direction) / out.scale;
+            const Vec3 offset = direction.v * reach;
+            for (int axis = 0; axis < 3; ++axis)
+                out.corners[static_cast<std::size_t>(3 * corner + axis) * out.stride + i] =
+                    half_bits(offset[axis]);
+        }
+    }
+
+    [[nodiscard]] WorldDir corner_direction(int u, int v) const {
+        const auto n = static_cast<float>(side_);
+        return point_.frame.to_world(
+            square_to_hemisphere({static_cast<float>(u) / n, static_cast<float>(v) / n}));
+    }
+
+    /// Where the ray through a corner meets the plane of the surfel.
+    [[nodiscard]] static float corner_distance(const TexelSample& seed, const TexelSample& beside,
+                                               WorldDir direction) {
+        const float facing = dot(seed.normal, direction.v);
+        const float on_plane = facing < -1e-4f ? dot(seed.normal, seed.offset) / facing : beside.distance;
+        return std::clamp(on_plane, nearest_corner * beside.distance, farthest_corner * beside.distance);
+    }
+
+    const std::vector<TexelSample>& texels_;
+    const DepthLayers& layers_;
+    const GatherPoint& point_;
+    int side_;
+    MergeLimits limits_;
+    std::vector<std::uint8_t> layer_;  // of texels that are still free
+    float deviation_;                  // from the plane, per squared distance
+};
+
+}  // namespace
+
+Surfels merge_surfels(const std::vector<TexelSample>& texels, const DepthLayers& layers,
+                      const GatherPoint& point, int side, const MergeLimits& limits) {
+    return Merger(texels, layers, point, side, limits).merge();
+}
+
+}  // namespace relumine

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What gather rays bring back.
+#include "radiance/incident.hpp"
+
+namespace relumine {
+namespace {
+
+/// Most surfaces emit nothing: not worth a vertex.
+bool may_emit(const Transport& t, const Hit& hit) {
+    const Mesh& mesh = t.scene.meshes[index(t.scene.instances[hit.instance].mesh)];
+    return !is_black(t.scene.materials[index(mesh.material)].emission);
+}
+
+Spectrum emission_met(const Transport& t, PathState path, const SampleStream& stream) {
+    if (!path.hit) return arriving_emission(t, path, nullptr);
+    if (!may_emit(t, path.hit)) return {};
+    const Vertex y = make_vertex(t, path, stream);  // attenuates its copy of the path
+    return path.throughput * arriving_emission(t, path, &y.point);
+}
+
+}  // namespace
+
+std::uint32_t source_depth(const std::string& radiance) {
+    if (radiance == "emission") return 0;
+    if (radiance == "direct") return 1;
+    return unlimited_depth;
+}
+
+RadiancePacket incident_radiance(const IncidentRadiance& source, const std::array<Ray, packet_size>& rays,
+                                 const std::array<Hit, packet_size>& hits, std::uint32_t depth,
+                                 const StreamPacket& streams, RayCounts& counts) {
+    const std::uint32_t behind = source.max_depth - std::min(source.max_depth, depth);
+    const std::uint32_t limit = depth + std::min(behind, source.source_depth);
+    PathPacket paths;
+    RadiancePacket sums;
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        paths[i] = {rays[i], hits[i], depth, 1, Spectrum{1}, 1, 0, false, rays[i].t_max >= 0};
+        if (!paths[i].alive) continue;
+        sums[i].direct = emission_met(source.transport, paths[i], streams[i]);
+        paths[i].alive = hits[i] && depth < limit;
+    }
+    if (depth >= limit) return sums;
+    const RadiancePacket reflected = path_radiance(source.transport, paths, limit, streams, counts);
+    for (std::size_t i = 0; i < packet_size; ++i) sums[i].indirect = reflected[i].total();
+    return sums;
+}
+
+}  // namespace relumine
