@@ -6,23 +6,16 @@
 #include <sys/resource.h>
 
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <mutex>
 
 #include "base/executor.hpp"
-#include "base/message.hpp"
 #include "film/film.hpp"
 #include "integrators/registry.hpp"
-#include "relumine/error.hpp"
-#include "shading/material.hpp"
+#include "render_setup.hpp"
 
 namespace relumine {
 namespace {
-
-constexpr int tile_side = 16;               // pixels; a multiple of the packets' blocks
-constexpr int default_width = 1024;         // pixels
-constexpr std::uint32_t longest_pass = 64;  // samples per pixel
 
 double cpu_seconds() {
     rusage usage{};
@@ -37,6 +30,13 @@ std::uint64_t peak_memory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+CacheStats cache_stats(const CacheCounts& c) {
+    CacheStats stats{c.records, c.surfels, c.record_bytes, c.points, c.reprojections, c.gathered, {}};
+    for (std::size_t i = 0; i < cache_step_names.size(); ++i)
+        stats.cpu_seconds.emplace_back(cache_step_names[i], 1e-9 * static_cast<double>(c.nanoseconds[i]));
+    return stats;
 }
 
 /// Measures stages and passes progress on; calls to the observer never overlap.
@@ -64,6 +64,7 @@ class Monitor {
     void finish_tile(const Tile& tile, std::uint64_t work) {
         const std::lock_guard lock(mutex_);
         rays_.add(tile.rays);
+        cache_.add(tile.cache);
         non_finite_ += tile.non_finite;
         keep_first(tile);
         stage_.done += work;
@@ -76,10 +77,25 @@ class Monitor {
         observer_->tile_finished(tile.rect);
         observer_->progress(stage_);
     }
+    /// Runs what goes before a pass; its time counts as a stage of its own.
+    template <typename Work>
+    void prepare(Preparation& p, const Work& work) {
+        const double begin = seconds();
+        work();
+        preparation_seconds_ += seconds() - begin;
+        const std::lock_guard lock(mutex_);
+        rays_.add(p.rays);
+        cache_.add(p.counts);
+    }
     [[nodiscard]] RenderStats stats(int threads) {
         end_stage();
         RenderStats stats;
         stats.stage_seconds = stages_;
+        if (cache_.points + cache_.gathered > 0) {
+            stats.stage_seconds.back().second -= preparation_seconds_;
+            stats.stage_seconds.insert(stats.stage_seconds.end() - 1, {"records", preparation_seconds_});
+            stats.cache = cache_stats(cache_);
+        }
         stats.total_seconds = seconds();
         stats.cpu_seconds = cpu_seconds() - cpu_begin_;
         for (std::size_t i = 0; i < ray_purpose_names.size(); ++i)
@@ -113,66 +129,16 @@ class Monitor {
     Progress stage_;
     double stage_begin_ = 0;
     std::vector<std::pair<std::string, double>> stages_;
+    double preparation_seconds_ = 0;
     RayCounts rays_;
+    CacheCounts cache_;
     std::uint64_t non_finite_ = 0;
     std::optional<NonFiniteSample> first_non_finite_;
     std::atomic<bool> stopped_ = false;
 };
 
-const Camera& find_camera(const SceneData& scene, const std::string& wanted) {
-    if (wanted.empty()) return scene.cameras.front();
-    std::vector<std::string> names;
-    for (const Camera& camera : scene.cameras) {
-        if (camera.name == wanted) return camera;
-        names.push_back(camera.name);
-    }
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-    if (error == std::errc{} && end == wanted.data() + wanted.size() && number < scene.cameras.size())
-        return scene.cameras[number];
-    throw SettingsError{expected_found("camera",
-                                       fmt::format("{} or an index below {}", one_of(names), names.size()),
-                                       "\"" + wanted + "\"" + did_you_mean(wanted, names))};
-}
-
-struct FrameSize {
-    int width, height;
-};
-
-FrameSize frame_size(const RenderSettings& settings, const Camera& camera) {
-    if (settings.width > 0) return {settings.width, settings.height};
-    const double aspect = camera.aspect > 0 ? camera.aspect : 4.0 / 3.0;
-    return {default_width, std::clamp(static_cast<int>(std::lround(default_width / aspect)), 1, 65536)};
-}
-
-PixelRect crop_window(const RenderSettings& settings, FrameSize frame) {
-    const PixelRect whole{0, 0, frame.width, frame.height};
-    if (!settings.crop) return whole;
-    const PixelRect& c = *settings.crop;
-    if (!c.empty() && c.x0 >= 0 && c.y0 >= 0 && c.x1 <= frame.width && c.y1 <= frame.height) return c;
-    throw SettingsError{expected_found("crop",
-                                       fmt::format("a rectangle inside 0 0 {} {}", frame.width, frame.height),
-                                       fmt::format("{} {} {} {}", c.x0, c.y0, c.x1, c.y1))};
-}
-
-PointSet point_set(const RenderSettings& s) {
-    if (s.sampler == "stratified") return PointSet::stratified;
-    if (s.sampler == "independent") return PointSet::independent;
-    return s.sampler == "auto" && s.method == "gather" ? PointSet::stratified : PointSet::sobol;
-}
-
-PixelFilterKind pixel_filter(const RenderSettings& s) {
-    if (s.pixel_sampling == "center") return PixelFilterKind::center;
-    return s.pixel_filter == "box" ? PixelFilterKind::box : PixelFilterKind::blackman_harris;
-}
-
-View make_view(const RenderSettings& s, const Camera& camera, FrameSize frame) {
-    return {CameraRays(camera, frame.width, frame.height), PixelFilter(pixel_filter(s)), point_set(s), s.seed,
-            static_cast<std::uint32_t>(s.samples_per_pixel)};
-}
-
 /// The crop cut along the full frame's multiples of the tile side, row by row.
-std::vector<PixelRect> tiles_of(const PixelRect& window) {
+std::vector<PixelRect> tiles_of(const PixelRect& window, int tile_side) {
     std::vector<PixelRect> tiles;
     for (int y = window.y0 / tile_side * tile_side; y < window.y1; y += tile_side)
         for (int x = window.x0 / tile_side * tile_side; x < window.x1; x += tile_side)
@@ -186,7 +152,7 @@ struct Pass {
 };
 
 /// Passes of 1, 1, 2, 4, … samples, so that there is soon something to see and to save.
-std::vector<Pass> passes_of(std::uint32_t samples) {
+std::vector<Pass> passes_of(std::uint32_t samples, std::uint32_t longest_pass) {
     std::vector<Pass> passes;
     for (std::uint32_t done = 0; done < samples;) {
         const std::uint32_t count = std::min({std::max(1u, done), longest_pass, samples - done});
@@ -214,11 +180,13 @@ bool render_pass(const Integrator& integrator, const std::vector<PixelRect>& til
     return !monitor.stop();
 }
 
-void render_passes(const Integrator& integrator, const PixelRect& window, std::uint32_t samples, int threads,
+void render_passes(Integrator& integrator, const PixelRect& window, std::uint32_t samples, int threads,
                    Film& film, Monitor& monitor) {
-    const std::vector<PixelRect> tiles = tiles_of(window);
+    const std::vector<PixelRect> tiles = tiles_of(window, integrator.tile_side());
     monitor.begin_stage("render", work_of(window, {0, samples}));
-    for (const Pass& pass : passes_of(samples)) {
+    for (const Pass& pass : passes_of(samples, integrator.longest_pass())) {
+        Preparation preparation{pass.first_sample, threads, [&] { return monitor.stop(); }, {}, {}};
+        monitor.prepare(preparation, [&] { integrator.prepare(preparation); });
         const bool whole = render_pass(integrator, tiles, pass, threads, film, monitor);
         if (whole || !film.has_passes())
             film.finish_pass();  // stopped in the first pass: better some tiles than none
@@ -241,28 +209,16 @@ void describe(Image& image, const RenderSettings& settings, const RenderStats& s
 Image render(const Scene& scene, const RenderSettings& settings, RenderObserver* observer) {
     validate(settings);
     const SceneData& data = scene.data();
-    const Camera& camera = find_camera(data, settings.camera);
-    const FrameSize frame = frame_size(settings, camera);
-    const PixelRect window = crop_window(settings, frame);
+    const Framing framing = find_framing(data, settings);
     const int threads = resolve_threads(settings.threads);
 
     Monitor monitor(observer);
-    monitor.begin_stage("build");
-    const auto opacity_at = [&data](const Hit& hit) {
-        const Mesh& mesh = data.meshes[index(data.instances[hit.instance].mesh)];
-        return opacity(data, data.materials[index(mesh.material)], texture_coordinates(mesh, hit));
-    };
-    const Tracer tracer(data, opacity_at);
-    monitor.begin_stage("lights");
-    const LightSampler lights(data, {});
-    const Masking masking = settings.masking == "separable" ? Masking::separable : Masking::correlated;
-    const UniformBsdfs uniform_bsdfs(data, masking);
-    const Transport transport{data, tracer, lights, uniform_bsdfs, masking};
-    const View view = make_view(settings, camera, frame);
-    const auto integrator = make_integrator(settings, transport, view, needs_surfaces(settings.aovs));
+    const RenderSetup setup(data, settings, framing, [&](const char* stage) { monitor.begin_stage(stage); });
+    const auto integrator =
+        make_integrator(settings, setup.transport, setup.view, needs_surfaces(settings.aovs));
 
-    Film film(frame.width, frame.height, window, settings.aovs);
-    render_passes(*integrator, window, view.samples_per_pixel, threads, film, monitor);
+    Film film(framing.width, framing.height, framing.window, settings.aovs);
+    render_passes(*integrator, framing.window, setup.view.samples_per_pixel, threads, film, monitor);
     Image image = film.develop();
     RenderStats stats = monitor.stats(threads);
     stats.samples = film.samples();

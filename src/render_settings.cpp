@@ -34,6 +34,28 @@ void check_frame(const RenderSettings& s) {
     check_range("height", s.height, 0, max_side);
 }
 
+void check_choice(const char* setting, int value, std::initializer_list<int> choices) {
+    if (std::ranges::find(choices, value) != choices.end()) return;
+    throw SettingsError{
+        expected_found(setting, fmt::format("one of {}", fmt::join(choices, ", ")), std::to_string(value))};
+}
+
+void check_real(const char* setting, float value, float least, float most) {
+    if (value >= least && value <= most) return;
+    throw SettingsError{
+        expected_found(setting, fmt::format("{} to {}", least, most), fmt::format("{}", value))};
+}
+
+void check_cache(const RenderSettings& s) {
+    check_choice("record size", s.record_size, {16, 32, 64, 128});
+    check_range("record layers", s.record_layers, 1, 64);
+    check_real("record spacing", s.record_spacing, 0.01f, 100);
+    check_range("records per point", s.records_per_point, 1, 16);
+    check_choice("gap cell", s.gap_cell, {1, 2, 4, 8});
+    check_real("BSDF share", s.bsdf_share, 0, 1);
+    check_name("cache scope", s.cache_scope, {"image", "tile"});
+}
+
 void check_layers(const std::vector<std::string>& names) {
     for (auto name = names.begin(); name != names.end(); ++name) {
         check_name("aov", *name, aov_names());
@@ -57,12 +79,13 @@ void validate(const RenderSettings& s) {
     check_name("sampler", s.sampler, {"auto", "sobol", "stratified", "independent"});
     check_range("gather rays", s.gather_rays, 1, million);
     check_range("light samples", s.light_samples, 0, million);
-    if (s.method == "gather") {  // their numbers are 32-bit indices into one sequence per pixel
+    if (s.method != "path") {  // their numbers are 32-bit indices into one sequence per pixel
         check_range("gather rays × samples per pixel", std::int64_t{s.gather_rays} * s.samples_per_pixel, 1,
                     max_rays_per_pixel);
         check_range("light samples × samples per pixel", std::int64_t{s.light_samples} * s.samples_per_pixel,
                     0, max_rays_per_pixel);
     }
+    check_cache(s);
     check_range("max depth", s.max_depth, -1, million);
     check_name("radiance", s.radiance, {"auto", "emission", "direct", "path"});
     check_name("masking", s.masking, {"correlated", "separable"});

@@ -16,6 +16,17 @@ std::string RenderStats::to_json() const {
     json["samples"] = samples;
     json["non_finite_samples"] = non_finite_samples;
     if (first_non_finite) json["first_non_finite"] = *first_non_finite;
+    if (cache) {
+        nlohmann::ordered_json& out = json["cache"];
+        out["records"] = cache->records;
+        out["surfels"] = cache->surfels;
+        out["record_bytes"] = cache->record_bytes;
+        out["points"] = cache->points;
+        out["reprojections"] = cache->reprojections;
+        out["gathered"] = cache->gathered;
+        out["gap_rays"] = rays.contains("gap") ? rays.at("gap") : 0;
+        for (const auto& [step, seconds] : cache->cpu_seconds) out["cpu_seconds"][step] = seconds;
+    }
     json["peak_memory_bytes"] = peak_memory_bytes;
     json["threads"] = threads;
     json["stopped"] = stopped;

@@ -2,6 +2,9 @@
 // The image is a function of scene, settings and seed: not of threads, tiles or crops.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <ostream>
+
 #include "tests/render_support.hpp"
 
 namespace relumine {
@@ -9,64 +12,136 @@ namespace {
 
 using testing::project_scene;
 
-RenderSettings settings_for(const std::string& method) {
+struct Case {
+    std::string method, scene, cache_scope = "image";
+
+    bool operator==(const Case&) const = default;
+};
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+    return out << c.method << " " << c.scene << " " << c.cache_scope;
+}
+
+bool keeps_records(const Case& c) { return c.method.starts_with("reproject"); }
+
+RenderSettings settings_for(const Case& c) {
     RenderSettings settings;
-    settings.method = method;
+    settings.method = c.method;
     settings.samples_per_pixel = 3;
     settings.gather_rays = 16;
+    settings.record_size = 16;
+    settings.cache_scope = c.cache_scope;
     settings.width = 70;
     settings.height = 50;
     settings.aovs = {"albedo", "normal", "depth", "indirect", "variance"};
+    if (keeps_records(c)) {  // gap rays are many: only one case follows them further
+        settings.max_depth = 3;
+        settings.radiance = c == Case{"reproject", "cornell-glossy.glb"} ? "path" : "emission";
+        if (c.method == "reproject-mc") settings.gap_cell = 8;
+        for (const char* layer : {"records", "gaps", "layers", "unknown"}) settings.aovs.emplace_back(layer);
+    }
     return settings;
 }
 
-class Determinism : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Determinism,
-                         ::testing::Values(std::pair{"path", "cornell-glossy.glb"},
-                                           std::pair{"gather", "cornell-glossy.glb"},
-                                           std::pair{"path", "demo.glb"}));
+Scene scene_of(const Case& c) { return project_scene(c.scene, "sky.exr"); }
+
+/// Every layer of `part`, bit by bit; names the first pixel that differs.
+void expect_same_bits(const Image& part, const Image& whole) {
+    ASSERT_EQ(part.layers.size(), whole.layers.size());
+    for (std::size_t i = 0; i < part.layers.size(); ++i) {
+        const Layer &a = part.layers[i], &b = whole.layers[i];
+        const std::size_t channels = b.channels.size(), row = static_cast<std::size_t>(part.width) * channels;
+        for (int y = 0; y < part.height; ++y) {
+            const int whole_y = part.window.y0 + y - whole.window.y0,
+                      whole_x = part.window.x0 - whole.window.x0;
+            const float* mine = &a.pixels[static_cast<std::size_t>(y) * row];
+            const float* theirs =
+                &b.pixels[static_cast<std::size_t>(whole_y * whole.width + whole_x) * channels];
+            const auto differ = std::mismatch(mine, mine + row, theirs).first - mine;
+            ASSERT_EQ(static_cast<std::size_t>(differ), row)
+                << "layer \"" << a.name << "\", pixel "
+                << part.window.x0 + differ / static_cast<int>(channels) << ", " << part.window.y0 + y << ": "
+                << mine[differ] << " and " << theirs[differ];
+        }
+    }
+}
+
+class Determinism : public ::testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(
+    Methods, Determinism,
+    ::testing::Values(Case{"path", "cornell-glossy.glb"}, Case{"gather", "cornell-glossy.glb"},
+                      Case{"path", "demo.glb"}, Case{"reproject", "cornell-glossy.glb"},
+                      Case{"reproject", "demo.glb"}, Case{"reproject", "cornell-glossy.glb", "tile"},
+                      Case{"reproject", "demo.glb", "tile"}, Case{"reproject-mc", "cornell-glossy.glb"},
+                      Case{"reproject-mc", "demo.glb"}, Case{"reproject-mc", "cornell-glossy.glb", "tile"},
+                      Case{"reproject-mc", "demo.glb", "tile"}));
 
 TEST_P(Determinism, ThreadsDoNotChangeABit) {
-    const auto [method, name] = GetParam();
-    const Scene scene = project_scene(name, "sky.exr");
-    RenderSettings settings = settings_for(method);
+    const Scene scene = scene_of(GetParam());
+    RenderSettings settings = settings_for(GetParam());
     settings.threads = 1;
     const Image one = render(scene, settings);
     for (const int threads : {2, 7}) {
         settings.threads = threads;
-        const Image many = render(scene, settings);
-        for (std::size_t i = 0; i < one.layers.size(); ++i)
-            EXPECT_EQ(one.layers[i].pixels, many.layers[i].pixels) << one.layers[i].name;
+        SCOPED_TRACE(threads);
+        expect_same_bits(render(scene, settings), one);
     }
 }
 
 TEST_P(Determinism, ACropHasTheBitsOfTheWhole) {
-    const auto [method, name] = GetParam();
-    const Scene scene = project_scene(name, "sky.exr");
-    RenderSettings settings = settings_for(method);
+    const Scene scene = scene_of(GetParam());
+    RenderSettings settings = settings_for(GetParam());
     const Image whole = render(scene, settings);
     for (const PixelRect crop : {PixelRect{0, 0, 1, 1}, {13, 7, 47, 41}, {69, 49, 70, 50}}) {
         settings.crop = crop;
         const Image part = render(scene, settings);
         ASSERT_EQ(part.width, crop.width());
         EXPECT_EQ(part.window, crop);
-        for (int y = crop.y0; y < crop.y1; ++y)
-            for (int x = crop.x0; x < crop.x1; ++x)
-                ASSERT_EQ(part.rgb(x - crop.x0, y - crop.y0), whole.rgb(x, y)) << x << " " << y;
+        expect_same_bits(part, whole);
     }
 }
 
 TEST_P(Determinism, SeedsMatter) {
-    const auto [method, name] = GetParam();
-    const Scene scene = project_scene(name, "sky.exr");
-    RenderSettings settings = settings_for(method);
+    const Scene scene = scene_of(GetParam());
+    RenderSettings settings = settings_for(GetParam());
     const Image first = render(scene, settings);
     settings.seed = 1;
     EXPECT_NE(first.layer()->pixels, render(scene, settings).layer()->pixels);
 }
 
+/// Placement reaches 126 pixels and a crop's first sample looks twice as far: the frame must be longer than
+/// that.
+class PlacementHalo : public ::testing::TestWithParam<std::pair<Case, PixelRect>> {};
+INSTANTIATE_TEST_SUITE_P(
+    Frames, PlacementHalo,
+    ::testing::Values(std::pair{Case{"reproject", "cornell-glossy.glb"}, PixelRect{0, 0, 24, 420}},
+                      std::pair{Case{"reproject-mc", "shadow.glb"}, PixelRect{0, 0, 420, 24}},
+                      std::pair{Case{"reproject", "demo.glb"}, PixelRect{0, 0, 420, 24}}));
+
+/// Placement reaches 126 pixels and a crop's first sample looks twice as far: the frame must be longer than
+/// that.
+TEST_P(PlacementHalo, ACropFarFromTheFramesEndHasTheBitsOfTheWhole) {
+    const auto& [c, frame] = GetParam();
+    const Scene scene = scene_of(c);
+    RenderSettings settings = settings_for(c);
+    settings.radiance = "emission";
+    settings.gap_cell = 8;
+    settings.record_spacing = 4;  // pixels, not metres, then limit how far records are used
+    settings.records_per_point = 16;
+    settings.samples_per_pixel = 2;
+    settings.width = frame.width();
+    settings.height = frame.height();
+    const Image whole = render(scene, settings);
+    const int x1 = frame.x1, y1 = frame.y1;
+    for (const PixelRect crop : {PixelRect{0, 0, x1 / 20 + 3, y1 / 20 + 3},
+                                 {x1 / 3, y1 / 3, x1 / 3 + 5, y1 / 3 + 5},
+                                 {x1 - 9, y1 - 9, x1, y1}}) {
+        settings.crop = crop;
+        expect_same_bits(render(scene, settings), whole);
+    }
+}
+
 TEST(Layers, SplitAddsUpToThePicture) {
-    RenderSettings settings = settings_for("path");
+    RenderSettings settings = settings_for({"path", "cornell-glossy.glb"});
     settings.aovs = {"emission", "direct", "indirect", "samples"};
     const Image image = render(project_scene("cornell-glossy.glb"), settings);
     for (std::size_t i = 0; i < image.layer()->pixels.size(); ++i) {

@@ -22,11 +22,21 @@ struct RenderSettings {
     std::string pixel_sampling = "jitter";  // "jitter" or "center"
     std::string pixel_filter = "box";       // "box" (one pixel wide) or "blackman-harris" (3 pixels wide)
     std::string sampler =
-        "auto";              // "sobol", "stratified", "independent"; auto: stratified for gather, else sobol
-    int gather_rays = 4096;  // `gather`: rays per shading point, 1 … 2²⁰
-    int light_samples = 0;   // `gather`: shadow rays per shading point to the bright part of the light
-    int max_depth = -1;      // scattering vertices of a path; −1: unlimited with Russian roulette
-    std::string radiance = "auto";  // `gather`: "emission", "direct", "path"; auto: path
+        "auto";              // "sobol", "stratified", "independent"; auto: sobol for path, else stratified
+    int gather_rays = 4096;  // `gather`, `reproject-mc`: rays per shading point, 1 … 2²⁰
+    bool gather_packets =
+        true;               // `gather`: trace rays sixteen at a time; false: one by one, as the paper did
+    int light_samples = 0;  // `gather`: shadow rays per shading point to the bright part of the light
+    int max_depth = -1;     // scattering vertices of a path; −1: unlimited with Russian roulette
+    std::string radiance = "auto";  // methods that gather: "emission", "direct", "path"; auto: path
+    int record_size = 64;       // `reproject`, `reproject-mc`: n, a record has n × n rays; 16, 32, 64 or 128
+    int record_layers = 16;     // the same: K, depth layers of a record, 1 … 64
+    float record_spacing = 1;   // the same: factor on how far records are used, 0.01 … 100
+    int records_per_point = 3;  // the same: M, the most records that one point uses, 1 … 16
+    int gap_cell = 4;           // the same: k, one ray for the gaps of k × k bits; 1, 2, 4 or 8
+    float bsdf_share = 0.1f;  // `reproject-mc`: share of the rays drawn from the BSDF, 0 … 1; 0: the paper's
+                              // estimator, biased where records see nothing
+    std::string cache_scope = "image";  // "image", or "tile": caches of their own for tiles of 64 × 64 pixels
     std::string masking =
         "correlated";               // Smith masking-shadowing of microfacets: "correlated" or "separable"
     std::string camera;             // name or index; "": the first, or a framing one where there is none
@@ -44,6 +54,15 @@ struct RenderSettings {
 /// Throws SettingsError naming the first setting that is out of range, what was expected and what was found.
 void validate(const RenderSettings& settings);
 
+/// What the radiance cache did.
+struct CacheStats {
+    std::uint64_t records = 0, surfels = 0, record_bytes = 0;
+    std::uint64_t points = 0;         // shading points lit from records
+    std::uint64_t reprojections = 0;  // of a record to a point
+    std::uint64_t gathered = 0;       // shading points gathered by Monte Carlo, because their BSDF transmits
+    std::vector<std::pair<std::string, double>> cpu_seconds;  // by step, all threads together
+};
+
 /// What a render did. Counts are of this run alone; times are wall-clock seconds unless said.
 struct RenderStats {
     std::vector<std::pair<std::string, double>> stage_seconds;  // in order: "build", "lights", "render", …
@@ -54,6 +73,7 @@ struct RenderStats {
     std::uint64_t samples = 0;                                    // camera samples
     std::uint64_t non_finite_samples = 0;                         // dropped
     std::optional<std::array<std::int64_t, 3>> first_non_finite;  // x, y, sample index, to replay it
+    std::optional<CacheStats> cache;                              // of methods that keep records
     std::uint64_t peak_memory_bytes = 0;                          // resident set of the process
     int threads = 0;
     bool stopped = false;  // the observer asked to stop: fewer samples than wanted

@@ -17,6 +17,7 @@ enum class ExitCode : int {
 ExitCode run_render(const Arguments& arguments);
 ExitCode run_info(const Arguments& arguments);
 ExitCode run_compare(const Arguments& arguments);
+ExitCode run_inspect(const Arguments& arguments);
 
 /// The exit code and the one line that an exception deserves.
 [[nodiscard]] ExitCode exit_code_of(const std::exception& error);

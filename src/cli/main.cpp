@@ -18,10 +18,9 @@ struct Command {
     std::string_view name;
     ExitCode (*run)(const Arguments&);
 };
-constexpr std::array<Command, 3> commands{
-    {{"render", run_render}, {"info", run_info}, {"compare", run_compare}}};
-constexpr std::array<NotYet, 2> commands_not_yet{
-    {{"inspect", "the radiance cache"}, {"relight", "stored light transport"}}};
+constexpr std::array<Command, 4> commands{
+    {{"render", run_render}, {"info", run_info}, {"compare", run_compare}, {"inspect", run_inspect}}};
+constexpr std::array<NotYet, 1> commands_not_yet{{{"relight", "stored light transport"}}};
 
 constexpr std::string_view help = R"(Relumine renders scenes with physically based light.
 Usage: relumine COMMAND [OPTIONS]
@@ -30,6 +29,8 @@ Commands:
   render SCENE -o FILE      a picture of a scene: .exr, .png or .pfm
   info SCENE                what a scene holds
   compare IMAGE REFERENCE   how far two pictures are apart
+  inspect SCENE --pixel X,Y --out DIR
+                            what the radiance cache does for one pixel
 
 Options:
   -h,--help                 this text; after a command: its options
@@ -48,13 +49,14 @@ ExitCode run_command(const std::string& name, const Arguments& arguments) {
     std::vector<std::string> names;
     names.reserve(commands.size());
     for (const Command& known : commands) names.emplace_back(known.name);
-    throw UsageError(fmt::format("expected a command: render, info or compare, found \"{}\"{}", name,
+    throw UsageError(fmt::format("expected a command: render, info, compare or inspect, found \"{}\"{}", name,
                                  did_you_mean(name, names)));
 }
 
 ExitCode run(const Arguments& arguments) {
     if (arguments.empty())
-        throw UsageError("expected a command: render, info or compare, found none; --help tells more");
+        throw UsageError(
+            "expected a command: render, info, compare or inspect, found none; --help tells more");
     const std::string& first = arguments.front();
     if (first == "-h" || first == "--help" || first == "help") {
         print(help);

@@ -11,11 +11,9 @@
 namespace relumine::cli {
 namespace {
 
-constexpr std::array<NotYet, 16> options_not_yet{{
+constexpr std::array<NotYet, 14> options_not_yet{{
     {"--error", "the cache method"},
     {"--unbiased", "the cache method"},
-    {"--record-size", "the cache and reproject methods"},
-    {"--cache-scope", "the cache method"},
     {"--reference", "the report of the true error"},
     {"--filter-residual", "the cache method"},
     {"--isa", "the choice of instruction sets"},
@@ -29,10 +27,8 @@ constexpr std::array<NotYet, 16> options_not_yet{{
     {"--resume", "checkpoints"},
     {"--tev", "the live view in tev"},
 }};
-constexpr std::array<NotYet, 5> values_not_yet{{
+constexpr std::array<NotYet, 3> values_not_yet{{
     {"--method cache", "the radiance cache"},
-    {"--method reproject", "the paper's methods"},
-    {"--method reproject-mc", "the paper's methods"},
     {"--radiance radiosity", "precomputed radiance"},
     {"--radiance photons", "precomputed radiance"},
 }};
@@ -44,6 +40,11 @@ constexpr std::string_view exit_code_help =
 void refuse_planned_value(const std::string& option, const std::string& value) {
     const auto planned = std::ranges::find(values_not_yet, option + " " + value, &NotYet::name);
     if (planned != values_not_yet.end()) throw refusal(*planned);
+}
+
+bool parse_switch(const std::string& option, const std::string& value) {
+    if (value == "on" || value == "off") return value == "on";
+    throw unexpected_value(option, "on or off", value);
 }
 
 /// "640x480" → 640, 480.
@@ -103,40 +104,26 @@ void add_sampling_options(CLI::App& app, RenderSettings& s) {
     add_text(app, {"--pixel-sampling", "P", "where in the pixel: jitter, center"}, s.pixel_sampling);
     add_text(app, {"--pixel-filter", "F", "box, blackman-harris"}, s.pixel_filter);
     add_text(app, {"--sampler", "S", "auto, sobol, stratified, independent"}, s.sampler);
-    add_number(app, {"--gather-rays", "N", "rays per shading point, for gather"}, s.gather_rays,
-               std::to_string(s.gather_rays));
+    add_number(app, {"--gather-rays", "N", "rays per shading point, for gather and reproject-mc"},
+               s.gather_rays, std::to_string(s.gather_rays));
     add_number(app, {"--light-samples", "N", "shadow rays to the bright light per shading point, for gather"},
                s.light_samples, std::to_string(s.light_samples));
+    add_value(app, {"--gather-packets", "on|off", "trace the rays of gather sixteen at a time"}, "on",
+              [&](const std::string& value) { s.gather_packets = parse_switch("--gather-packets", value); });
     add_number(app, {"--seed", "N", "same seed, same bits"}, s.seed, "0");
 }
 
-void add_light_options(CLI::App& app, RenderSettings& s) {
+/// Of the methods that keep records, beside those that other commands share.
+void add_method_options(CLI::App& app, RenderSettings& s) {
     add_number(
-        app, {"--max-depth", "N", "scattering vertices of a path: 0 emission, 1 direct light; -1 unlimited"},
-        s.max_depth, "-1");
-    add_value(app, {"--radiance", "S", "what a gather ray brings back: auto, emission, direct, path"},
-              s.radiance, [&](const std::string& source) {
-                  refuse_planned_value("--radiance", source);
-                  s.radiance = source;
-              });
-    add_text(app, {"--masking", "M", "of microfacets: correlated, separable"}, s.masking);
+        app,
+        {"--bsdf-share", "X", "share of reproject-mc's rays drawn from the BSDF; 0: the paper's, biased"},
+        s.bsdf_share, "0.1");
+    add_text(app, {"--cache-scope", "S", "image, or tile: tiles of 64 x 64 pixels with records of their own"},
+             s.cache_scope);
 }
 
-void add_scene_options(CLI::App& app, RenderOptions& options) {
-    SceneOptions& scene = options.scene_options;
-    add_text(app, {"--environment", "FILE", "lat-long .exr, .hdr or .pfm that replaces the scene's own"},
-             scene.environment);
-    add_number(app, {"--env-scale", "X", "multiplies the environment's radiance"}, scene.environment_scale,
-               "1");
-    add_number(app, {"--env-rotate", "DEG", "counter-clockwise seen from +Y"},
-               scene.environment_rotation_degrees, "0");
-}
-
-void add_camera_options(CLI::App& app, RenderSettings& s) {
-    add_text(app, {"--camera", "NAME|INDEX", "the first by default; a framing one where there is none"},
-             s.camera);
-    add_value(app, {"--size", "WxH", "pixels of the full frame"}, "1024 wide by the camera's aspect",
-              [&](const std::string& size) { parse_size(size, s); });
+void add_crop_option(CLI::App& app, RenderSettings& s) {
     app.add_option_function<std::vector<std::string>>(
            "--crop", [&](const std::vector<std::string>& edges) { s.crop = parse_crop(edges); },
            "only the pixels X0 <= x < X1, Y0 <= y < Y1 of the full frame")
@@ -160,11 +147,15 @@ void add_options(CLI::App& app, RenderOptions& options) {
     add_output_options(app, options);
     app.option_defaults()->group("Method and sampling");
     add_sampling_options(app, options.settings);
+    app.option_defaults()->group("Records (reproject, reproject-mc)");
+    add_record_options(app, options.settings);
+    add_method_options(app, options.settings);
     app.option_defaults()->group("Light");
     add_light_options(app, options.settings);
-    add_scene_options(app, options);
+    add_environment_options(app, options.scene_options);
     app.option_defaults()->group("Camera");
-    add_camera_options(app, options.settings);
+    add_frame_options(app, options.settings);
+    add_crop_option(app, options.settings);
     app.option_defaults()->group("Running");
     add_running_options(app, options);
 }
@@ -177,6 +168,46 @@ void refuse_contradictions(const RenderOptions& options) {
 }
 
 }  // namespace
+
+void add_record_options(CLI::App& app, RenderSettings& s) {
+    add_number(app, {"--record-size", "n", "rays along each side of a record's square: 16, 32, 64, 128"},
+               s.record_size, std::to_string(s.record_size));
+    add_number(app, {"--record-layers", "K", "depth layers of a record"}, s.record_layers,
+               std::to_string(s.record_layers));
+    add_number(app, {"--record-spacing", "X", "factor on how far records are used"}, s.record_spacing, "1");
+    add_number(app, {"--records-per-point", "M", "the most records that one point uses"}, s.records_per_point,
+               std::to_string(s.records_per_point));
+    add_number(app, {"--gap-cell", "k", "one ray for the gaps of k x k bits of 128 x 128: 1, 2, 4, 8"},
+               s.gap_cell, std::to_string(s.gap_cell));
+}
+
+void add_light_options(CLI::App& app, RenderSettings& s) {
+    add_number(
+        app, {"--max-depth", "N", "scattering vertices of a path: 0 emission, 1 direct light; -1 unlimited"},
+        s.max_depth, "-1");
+    add_value(app, {"--radiance", "S", "what a gather ray brings back: auto, emission, direct, path"},
+              s.radiance, [&](const std::string& source) {
+                  refuse_planned_value("--radiance", source);
+                  s.radiance = source;
+              });
+    add_text(app, {"--masking", "M", "of microfacets: correlated, separable"}, s.masking);
+}
+
+void add_environment_options(CLI::App& app, SceneOptions& scene) {
+    add_text(app, {"--environment", "FILE", "lat-long .exr, .hdr or .pfm that replaces the scene's own"},
+             scene.environment);
+    add_number(app, {"--env-scale", "X", "multiplies the environment's radiance"}, scene.environment_scale,
+               "1");
+    add_number(app, {"--env-rotate", "DEG", "counter-clockwise seen from +Y"},
+               scene.environment_rotation_degrees, "0");
+}
+
+void add_frame_options(CLI::App& app, RenderSettings& s) {
+    add_text(app, {"--camera", "NAME|INDEX", "the first by default; a framing one where there is none"},
+             s.camera);
+    add_value(app, {"--size", "WxH", "pixels of the full frame"}, "1024 wide by the camera's aspect",
+              [&](const std::string& size) { parse_size(size, s); });
+}
 
 std::optional<RenderOptions> parse_render_options(const Arguments& arguments) {
     CLI::App app("Renders SCENE and writes the picture.", "relumine render");

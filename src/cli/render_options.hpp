@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of `relumine render`.
+// The options of `relumine render`, and those of them that other commands share.
 #pragma once
 
 #include <optional>
@@ -24,6 +24,11 @@ struct RenderOptions {
     bool quiet = false;
     bool no_progress = false;
 };
+
+void add_record_options(CLI::App& app, RenderSettings& settings);
+void add_light_options(CLI::App& app, RenderSettings& settings);
+void add_environment_options(CLI::App& app, SceneOptions& scene);
+void add_frame_options(CLI::App& app, RenderSettings& settings);
 
 /// Empty when help was wanted and has been printed. Throws UsageError.
 [[nodiscard]] std::optional<RenderOptions> parse_render_options(const Arguments& arguments);

@@ -69,6 +69,10 @@ const std::vector<Film::LayerSpec>& Film::known_layers() {
         {"direct", rgb, Develop::mean, [](S p, Out o) { put(o, p.split.direct); }},
         {"indirect", rgb, Develop::mean, [](S p, Out o) { put(o, p.split.indirect); }},
         {"samples", {"N"}, Develop::samples, [](S p, Out o) { o[0] = static_cast<float>(p.samples); }},
+        {"records", {"N"}, Develop::mean, [](S p, Out o) { o[0] = p.cache.records; }},
+        {"gaps", {"Y"}, Develop::mean, [](S p, Out o) { o[0] = p.cache.gaps; }},
+        {"layers", {"N"}, Develop::mean, [](S p, Out o) { o[0] = p.cache.layers; }},
+        {"unknown", {"Y"}, Develop::mean, [](S p, Out o) { o[0] = p.cache.unknown; }},
         {"variance", rgb, Develop::variance,
          [](S p, Out o) {
              put(o, p.radiance);
@@ -79,8 +83,8 @@ const std::vector<Film::LayerSpec>& Film::known_layers() {
 }
 
 std::vector<std::string> film_layer_names() {
-    return {"albedo",   "normal", "position", "depth",   "material_id",
-            "emission", "direct", "indirect", "samples", "variance"};
+    return {"albedo",   "normal",  "position", "depth", "material_id", "emission", "direct",
+            "indirect", "samples", "records",  "gaps",  "layers",      "unknown",  "variance"};
 }
 
 bool needs_surfaces(const std::vector<std::string>& layers) {

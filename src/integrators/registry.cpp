@@ -3,6 +3,7 @@
 #include "integrators/registry.hpp"
 
 #include "base/assert.hpp"
+#include "integrators/cached_gather.hpp"
 #include "integrators/gather.hpp"
 #include "integrators/path_tracer.hpp"
 
@@ -20,6 +21,8 @@ struct Method {
 constexpr std::array methods{
     Method{"path", make_path_tracer},
     Method{"gather", make_gather},
+    Method{"reproject", make_reproject},
+    Method{"reproject-mc", make_reproject_mc},
 };
 
 }  // namespace

@@ -19,6 +19,8 @@ struct View {
     PointSet point_set = PointSet::sobol;
     std::uint64_t seed = 0;
     std::uint32_t samples_per_pixel = 1;
+    int width = 0, height = 0;  // of the full frame, pixels
+    PixelRect window;           // the part of it that is wanted
 };
 
 /// A camera ray and what it hit, as the beginning of a path.

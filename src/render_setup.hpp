@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands ready before the first pixel: the frame, the tracer, the lights, the view.
+#pragma once
+
+#include <functional>
+
+#include "integrators/view.hpp"
+#include "relumine/render.hpp"
+
+namespace relumine {
+
+/// Which picture settings ask for.
+struct Framing {
+    const Camera& camera;
+    int width, height;  // of the full frame, pixels
+    PixelRect window;   // the part of it that is wanted
+};
+
+/// Throws SettingsError for a camera that does not exist or a crop outside the frame. Settings are valid.
+[[nodiscard]] Framing find_framing(const SceneData& scene, const RenderSettings& settings);
+
+/// Owns what `transport` refers to; `scene` outlives it.
+struct RenderSetup {
+    /// `begin_stage` hears of "build" and "lights" as they begin.
+    RenderSetup(const SceneData& scene, const RenderSettings& settings, const Framing& framing,
+                const std::function<void(const char*)>& begin_stage);
+    RenderSetup(const RenderSetup&) = delete;
+    RenderSetup& operator=(const RenderSetup&) = delete;
+
+    Tracer tracer;
+    LightSampler lights;
+    Masking masking;
+    UniformBsdfs uniform_bsdfs;
+    Transport transport;
+    View view;
+};
+
+}  // namespace relumine
