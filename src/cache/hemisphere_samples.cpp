@@ -43,7 +43,7 @@ struct HemisphereTracer {
             rays[i] = ray_through(u0 + lane % block, v0 + lane / block, streams[i]);
         }
         counts.add(RayPurpose::record, packet_size);
-        source.transport.tracer.closest_hits(rays, hits, Coherence::incoherent);
+        source.transport.tracer.closest_hits(rays, hits, Coherence::coherent);
         const RadiancePacket incident =
             incident_radiance(source, rays, hits, point.depth + 1, streams, counts);
         for (std::size_t i = 0; i < packet_size; ++i)
