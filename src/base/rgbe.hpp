@@ -13,7 +13,7 @@ namespace relumine {
 /// Least exponent byte that is not black: 2⁻¹²⁶, so that decoding needs no denormals.
 inline constexpr int least_rgbe_exponent = 10;
 
-/// Finite, non-negative radiance to RGBE: relative error ≤ 1/256 of the largest channel; 0 stays 0.
+/// Finite, non-negative radiance to RGBE: relative error ≤ 1/255 of the largest channel; 0 stays 0.
 inline std::uint32_t pack_rgbe(Spectrum s) {
     int exponent = 0;
     std::frexp(max_component(s), &exponent);

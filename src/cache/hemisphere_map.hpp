@@ -15,7 +15,7 @@ namespace relumine {
 /// Solid angle of the whole square, steradian.
 inline constexpr float hemisphere_solid_angle = 2 * pi;
 
-/// (4/π)·atan(x) / x as a polynomial in x², |x| ≤ 1; the error of the angle is below 4e-7 of an octant. The
+/// (4/π)·atan(x) / x as a polynomial in x², |x| ≤ 1; the error of the angle is below 5e-7 of an octant. The
 /// same operations in the same order as the kernels', so that both give the same bits.
 inline constexpr std::array<float, 7> octant_polynomial{
     1.27323459f, -0.42420987f, 0.252200646f, -0.168491105f, 0.101378236f, -0.0427847775f, 0.00867259245f};
