@@ -102,6 +102,7 @@ class Monitor {
             stats.rays[ray_purpose_names[i]] = rays_.by_purpose[i];
         stats.total_rays = rays_.total();
         stats.non_finite_samples = non_finite_;
+        stats.non_finite_rays = rays_.non_finite;
         if (first_non_finite_)
             stats.first_non_finite = {first_non_finite_->x, first_non_finite_->y, first_non_finite_->sample};
         stats.peak_memory_bytes = peak_memory_bytes();

@@ -15,6 +15,7 @@ std::string RenderStats::to_json() const {
     json["total_rays"] = total_rays;
     json["samples"] = samples;
     json["non_finite_samples"] = non_finite_samples;
+    json["non_finite_rays"] = non_finite_rays;
     if (first_non_finite) json["first_non_finite"] = *first_non_finite;
     if (cache) {
         nlohmann::ordered_json& out = json["cache"];

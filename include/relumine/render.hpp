@@ -72,6 +72,7 @@ struct RenderStats {
     std::uint64_t total_rays = 0;
     std::uint64_t samples = 0;                                    // camera samples
     std::uint64_t non_finite_samples = 0;                         // dropped
+    std::uint64_t non_finite_rays = 0;                            // of records and gaps: counted as black
     std::optional<std::array<std::int64_t, 3>> first_non_finite;  // x, y, sample index, to replay it
     std::optional<CacheStats> cache;                              // of methods that keep records
     std::uint64_t peak_memory_bytes = 0;                          // resident set of the process

@@ -41,7 +41,11 @@ struct GapTracer {
         source.transport.tracer.closest_hits(rays, hits, Coherence::incoherent);
         const RadiancePacket radiance =
             incident_radiance(source, rays, hits, point.depth + 1, streams, counts);
-        for (std::size_t i = 0; i < gaps.size(); ++i) put(gaps[i], radiance[i]);
+        for (std::size_t i = 0; i < gaps.size(); ++i) {
+            const bool finite = is_finite(radiance[i].total());
+            counts.non_finite += finite ? 0 : 1;
+            put(gaps[i], finite ? radiance[i] : SplitRadiance{});
+        }
     }
 
     void start(const GapRay& gap, Ray& ray, SampleStream& stream) const {
@@ -59,9 +63,7 @@ struct GapTracer {
     }
 
     void put(const GapRay& gap, const SplitRadiance& found) const {
-        const bool finite = is_finite(found.total());
-        const std::uint32_t total = finite ? pack_rgbe(found.total()) : 0,
-                            direct = finite ? pack_rgbe(found.direct) : 0;
+        const std::uint32_t total = pack_rgbe(found.total()), direct = pack_rgbe(found.direct);
         std::uint64_t open = open_bits(incident.covered, gap.cell_x, gap.cell_y, k);
         for (; open != 0; open &= open - 1) {
             const int bit = std::countr_zero(open);

@@ -46,8 +46,11 @@ struct HemisphereTracer {
         source.transport.tracer.closest_hits(rays, hits, Coherence::coherent);
         const RadiancePacket incident =
             incident_radiance(source, rays, hits, point.depth + 1, streams, counts);
-        for (std::size_t i = 0; i < packet_size; ++i)
-            texels[streams[i].index] = texel_sample(rays[i], hits[i], incident[i]);
+        for (std::size_t i = 0; i < packet_size; ++i) {
+            const bool finite = is_finite(incident[i].total());
+            counts.non_finite += finite ? 0 : 1;
+            texels[streams[i].index] = texel_sample(rays[i], hits[i], finite ? incident[i] : SplitRadiance{});
+        }
     }
 
     [[nodiscard]] std::uint32_t texel_index(int u, int v) const {
@@ -63,8 +66,7 @@ struct HemisphereTracer {
 
     [[nodiscard]] TexelSample texel_sample(const Ray& ray, const Hit& hit,
                                            const SplitRadiance& incident) const {
-        const Spectrum total = is_finite(incident.total()) ? incident.total() : Spectrum{};
-        const Spectrum direct = is_finite(incident.total()) ? incident.direct : Spectrum{};
+        const Spectrum total = incident.total(), direct = incident.direct;
         if (!hit) return {total, direct, infinity, ray.direction.v, {}};
         return {total, direct, hit.t, ray.origin + ray.direction.v * hit.t - point.position,
                 hit_normal(source.transport.scene, hit, -ray.direction)};

@@ -101,6 +101,17 @@ TEST(Record, HarmonicDistanceOfAPlaneOverhead) {
     EXPECT_NEAR(record.nearest, 3, 0.03);
 }
 
+TEST(Record, CountsRadianceThatIsNotFinite) {
+    const Stage stage({{{-50, 3, -50}, {100, 0, 0}, {0, 0, 100}, Spectrum{infinity}}}, sky);
+    RayCounts rays;
+    const FlushDenormals flush;
+    const Record record = make_record(stage.source(), {{}, frame_around({0, 1, 0}), 1e-5f, 0}, {16, 16},
+                                      {0, 0.1f, 0.1f}, 1, rays);
+    EXPECT_GT(rays.non_finite, 200u);
+    EXPECT_EQ(std::ranges::count(std::span(record.radiance).first(256), 0u),
+              static_cast<std::ptrdiff_t>(rays.non_finite));
+}
+
 TEST(Record, IsAFunctionOfItsKey) {
     const Stage stage = bar_and_wall();
     const Record a = stage.record({}, {0, 1, 0}, 64, 0.1f, 1), b = stage.record({}, {0, 1, 0}, 64, 0.1f, 1),

@@ -71,6 +71,10 @@ Rendered render_watched(const Scene& scene, const RenderOptions& options, EventS
 }
 
 void warn_of_lost_samples(const RenderStats& stats, const RenderOptions& options, EventStream& events) {
+    if (stats.non_finite_rays > 0)
+        warn(fmt::format("{} rays of records and gaps were not finite and count as black",
+                         stats.non_finite_rays),
+             options, events);
     if (stats.non_finite_samples == 0) return;
     std::string text = fmt::format("{} of {} samples were not finite and are left out",
                                    stats.non_finite_samples, stats.samples);
