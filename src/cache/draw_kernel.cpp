@@ -43,6 +43,30 @@ struct Window {
 };
 static_assert(std::endian::native == std::endian::little);
 
+/// The rows of a narrow rectangle's masks.
+struct NarrowRows {
+    std::uint32_t count;
+    Window window;
+    std::uint32_t span;  // within the window
+    MaskRow *open, *covered;
+
+    HWY_INLINE NarrowRows(const BitRect& rect, const Canvas& canvas)
+        : count(static_cast<std::uint32_t>(rect.height())),
+          window(rect.x0),
+          span(((1u << rect.width()) - 1) << window.shift),
+          open(&canvas.open.rows[rect.y0]),
+          covered(&canvas.covered.rows[rect.y0]) {}
+
+    /// Takes what is open of row y, now covered; bit 0 is the rectangle's first column.
+    HWY_INLINE std::uint32_t take(std::uint32_t y) const {
+        const std::uint32_t bits = window.load(open + y), fresh = bits & span;
+        if (fresh == 0) return 0;
+        window.store(open + y, bits & ~span);
+        window.store(covered + y, window.load(covered + y) | fresh);
+        return fresh >> window.shift;
+    }
+};
+
 /// The lanes from `first` on of a surfel's row, stretched to its rectangle's width.
 HWY_INLINE VU stretched(const std::uint32_t* texels, const TexelSteps& steps, std::uint32_t first) {
     const U u;
@@ -91,7 +115,8 @@ struct Brush {
     }
 };
 
-/// Single texels are the most frequent surfels: one colour over a few bits.
+/// Single texels are the most frequent surfels: one colour over a few bits. Without a way of their own a
+/// whole reprojection takes 5 % longer.
 constexpr std::uint32_t dot_width = 4;
 
 HWY_INLINE void dot_row(std::uint32_t color, std::uint64_t fresh, std::uint32_t* out) {
@@ -105,59 +130,44 @@ HWY_INLINE void dot_row(std::uint32_t color, std::uint64_t fresh, std::uint32_t*
 
 template <bool with_direct>
 HWY_INLINE bool draw_dot(const Brush& brush, const Brush& direct, const Canvas& canvas) {
-    const auto width = static_cast<std::uint32_t>(brush.rect.width()),
-               height = static_cast<std::uint32_t>(brush.rect.height());
-    const Window window(brush.rect.x0);
-    const std::uint32_t span = ((1u << width) - 1) << window.shift;
+    const NarrowRows rows(brush.rect, canvas);
     const std::uint32_t color = brush.texels[0], direct_color = direct.texels[0];
-    MaskRow* const open_rows = &canvas.open.rows[brush.rect.y0];
-    MaskRow* const covered_rows = &canvas.covered.rows[brush.rect.y0];
     const std::size_t at = std::size_t{brush.rect.y0} * mask_side + brush.rect.x0;
     std::uint32_t* const radiance = canvas.radiance.data() + at;
     std::uint32_t* const direct_radiance = canvas.direct.data() + at;
     std::uint32_t any = 0;
-    for (std::uint32_t y = 0; y < height; ++y) {
-        const std::uint32_t open = window.load(open_rows + y), fresh = open & span;
+    for (std::uint32_t y = 0; y < rows.count; ++y) {
+        const std::uint32_t fresh = rows.take(y);
         if (fresh == 0) continue;
         any |= fresh;
-        window.store(open_rows + y, open & ~span);
-        window.store(covered_rows + y, window.load(covered_rows + y) | fresh);
-        dot_row(color, fresh >> window.shift, radiance + y * mask_side);
-        if constexpr (with_direct)
-            dot_row(direct_color, fresh >> window.shift, direct_radiance + y * mask_side);
+        dot_row(color, fresh, radiance + y * mask_side);
+        if constexpr (with_direct) dot_row(direct_color, fresh, direct_radiance + y * mask_side);
     }
     return any != 0;
 }
 
 template <bool with_direct>
 HWY_INLINE bool draw_narrow(const Brush& brush, const Brush& direct, const Canvas& canvas) {
-    const auto width = static_cast<std::uint32_t>(brush.rect.width()),
-               height = static_cast<std::uint32_t>(brush.rect.height());
-    const Window window(brush.rect.x0);
-    const std::uint32_t span = ((1u << width) - 1) << window.shift;
-    MaskRow* const open_rows = &canvas.open.rows[brush.rect.y0];
-    MaskRow* const covered_rows = &canvas.covered.rows[brush.rect.y0];
+    const NarrowRows rows(brush.rect, canvas);
+    const auto width = static_cast<std::uint32_t>(brush.rect.width());
     std::uint32_t* const radiance = canvas.radiance.data();
     const bool one_vector = width <= hn::Lanes(U());
     VU row = hn::Zero(U());  // where one vector holds it: the texture's row, kept while it stays the same
     std::uint32_t any = 0, row_number = ~0u;
-    for (std::uint32_t y = 0; y < height; ++y) {
-        const std::uint32_t open = window.load(open_rows + y), fresh = open & span;
+    for (std::uint32_t y = 0; y < rows.count; ++y) {
+        const std::uint32_t fresh = rows.take(y);
         if (fresh == 0) continue;
         any |= fresh;
-        window.store(open_rows + y, open & ~span);
-        window.store(covered_rows + y, window.load(covered_rows + y) | fresh);
         if (one_vector) {
             if (const std::uint32_t wanted = brush.rows(y); wanted != row_number) {
                 row_number = wanted;
                 row = stretched(brush.texels + wanted * brush.side, brush.columns, 0);
             }
-            store_under_mask(row, fresh >> window.shift,
-                             radiance + (brush.rect.y0 + y) * mask_side + brush.rect.x0);
+            store_under_mask(row, fresh, radiance + (brush.rect.y0 + y) * mask_side + brush.rect.x0);
         } else {
-            brush.write(y, 0, width, fresh >> window.shift, radiance);
+            brush.write(y, 0, width, fresh, radiance);
         }
-        if constexpr (with_direct) direct.write(y, 0, width, fresh >> window.shift, canvas.direct.data());
+        if constexpr (with_direct) direct.write(y, 0, width, fresh, canvas.direct.data());
     }
     return any != 0;
 }
