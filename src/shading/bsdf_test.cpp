@@ -109,6 +109,16 @@ Density density_of(const Bsdf& bsdf, LocalDir w_out) {
     return [=](LocalDir w_in) { return double{pdf(bsdf, w_out, w_in)}; };
 }
 
+TEST(Sampling, SinesOfTurnsAreThoseOfTheLibrary) {
+    for (int i = 0; i <= 100'000; ++i) {
+        const float turns = static_cast<float>(i) / 100'000;
+        const double angle = 2 * 3.14159265358979323846 * static_cast<double>(turns);
+        const auto [sine, cosine] = sine_cosine_of_turns(turns);
+        ASSERT_NEAR(sine, std::sin(angle), 2e-7) << turns;
+        ASSERT_NEAR(cosine, std::cos(angle), 2e-7) << turns;
+    }
+}
+
 TEST(Bsdf, SamplesFollowThePdf) {  // χ², α = 1e-6 in all
     const double level =
         testing::sidak(1e-6, static_cast<double>(rough_bsdfs().size() * view_cosines.size()));

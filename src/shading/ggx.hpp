@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "base/frame.hpp"
+#include "shading/sampling.hpp"
 
 namespace relumine {
 
@@ -46,10 +46,10 @@ inline float ggx_masking_shadowing(const Ggx& g, LocalDir w_out, LocalDir w_in) 
 /// A point on the unit sphere's cap z ≥ −`lowest`, uniform in solid angle, as the tip of a mirrored view ray
 /// [Dupuy23].
 inline Vec3 sample_cap(float lowest, Point2 u) {
-    const float phi = 2 * pi * u.x;
+    const auto [sine, cosine] = sine_cosine_of_turns(u.x);
     const float z = (1 - u.y) * (1 + lowest) - lowest;
     const float r = std::sqrt(std::max(0.0f, 1 - sqr(z)));
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    return {r * cosine, r * sine, z};
 }
 
 /// A microfacet normal, by the density of those visible from `w_out` (z > 0) [Heitz18, Dupuy23].

@@ -2,6 +2,8 @@
 // Maps from the unit square to directions and triangles.
 #pragma once
 
+#include <cstdint>
+
 #include "base/frame.hpp"
 
 namespace relumine {
@@ -20,6 +22,16 @@ inline SineCosine sine_cosine_of_octant(float x) {
               * (1.0f / 2
                  - x2 * (1.0f / 24 - x2 * (1.0f / 720 - x2 * (1.0f / 40320 - x2 * (1.0f / 3628800)))));
     return {x * sine, cosine};
+}
+
+/// Of the angle 2π `turns`, for turns in [0, 1], to 2e-7.
+inline SineCosine sine_cosine_of_turns(float turns) {
+    const auto quarter = static_cast<std::int32_t>(4 * turns + 0.5f);  // the nearest
+    const auto [sine, cosine] =
+        sine_cosine_of_octant((2 * pi) * (turns - 0.25f * static_cast<float>(quarter)));
+    const bool swapped = (quarter & 1) != 0;
+    const float s = swapped ? cosine : sine, c = swapped ? sine : cosine;
+    return {(quarter & 2) != 0 ? -s : s, ((quarter + 1) & 2) != 0 ? -c : c};
 }
 
 /// Square to disk, area-preserving and with little distortion [Shirley97].
