@@ -12,6 +12,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cstring>
 #include <vector>
 
 #include "base/hash.hpp"
@@ -127,27 +128,32 @@ void set_ray(RTCRay& query, const Ray& ray) {
     query.flags = 0;
 }
 
-using PacketMask = std::array<int, packet_size>;
-
 /// Fills a packet; the mask tells Embree which lanes count.
-PacketMask set_rays(RTCRay16& query, std::span<const Ray, packet_size> rays) {
-    PacketMask valid;
+LaneMask set_rays(RTCRay16& query, const RayLanes& rays) {
+    const auto copy = [](const auto& from, auto* to) { std::memcpy(to, from.data(), sizeof from); };
+    copy(rays.origin.x, query.org_x);
+    copy(rays.origin.y, query.org_y);
+    copy(rays.origin.z, query.org_z);
+    copy(rays.direction.x, query.dir_x);
+    copy(rays.direction.y, query.dir_y);
+    copy(rays.direction.z, query.dir_z);
+    copy(rays.t_max, query.tfar);
+    copy(rays.opacity_seed, query.id);
+    LaneMask valid;
     for (std::size_t i = 0; i < packet_size; ++i) {
-        valid[i] = rays[i].t_max >= 0 ? -1 : 0;
-        query.org_x[i] = rays[i].origin.x;
-        query.org_y[i] = rays[i].origin.y;
-        query.org_z[i] = rays[i].origin.z;
-        query.dir_x[i] = rays[i].direction.v.x;
-        query.dir_y[i] = rays[i].direction.v.y;
-        query.dir_z[i] = rays[i].direction.v.z;
+        valid[i] = rays.t_max[i] >= 0 ? -1 : 0;
         query.tnear[i] = 0;
-        query.tfar[i] = rays[i].t_max;
         query.time[i] = 0;
         query.mask[i] = 0xffffffffu;
-        query.id[i] = rays[i].opacity_seed;
         query.flags[i] = 0;
     }
     return valid;
+}
+
+RayLanes in_lanes(std::span<const Ray, packet_size> rays) {
+    RayLanes lanes;
+    for (std::size_t i = 0; i < packet_size; ++i) lanes.set(i, rays[i]);
+    return lanes;
 }
 
 std::uint32_t instance_of(unsigned geometry, unsigned instance) {
@@ -287,26 +293,41 @@ bool Tracer::occluded(const Ray& ray) const {
     return query.tfar < 0;
 }
 
-void Tracer::closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits,
-                          Coherence coherence) const {
+void Tracer::closest_hits(const RayLanes& rays, HitLanes& hits, Coherence coherence) const {
     alignas(64) RTCRayHit16 query;
-    alignas(64) const PacketMask valid = set_rays(query.ray, rays);
+    const LaneMask valid = set_rays(query.ray, rays);
     std::ranges::fill(query.hit.geomID, RTC_INVALID_GEOMETRY_ID);
     std::ranges::fill(query.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
     intersect16(impl_->top.get(), valid.data(), &query, coherence);
+    static_assert(no_instance == RTC_INVALID_GEOMETRY_ID);
     for (std::size_t i = 0; i < packet_size; ++i) {
-        hits[i] = {};
-        if (query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        hits[i] = {query.ray.tfar[i], query.hit.u[i], query.hit.v[i],
-                   instance_of(query.hit.geomID[i], query.hit.instID[0][i]), query.hit.primID[i]};
+        hits.t[i] = query.ray.tfar[i];
+        hits.u[i] = query.hit.u[i];
+        hits.v[i] = query.hit.v[i];
+        hits.instance[i] = instance_of(query.hit.geomID[i], query.hit.instID[0][i]);
+        hits.triangle[i] = query.hit.primID[i];
     }
 }
 
-void Tracer::occluded(std::span<const Ray, packet_size> rays, std::span<bool, packet_size> blocked) const {
+void Tracer::occluded(const RayLanes& rays, LaneMask& blocked) const {
     alignas(64) RTCRay16 query;
-    alignas(64) const PacketMask valid = set_rays(query, rays);
+    const LaneMask valid = set_rays(query, rays);
     occluded16(impl_->top.get(), valid.data(), &query);
-    for (std::size_t i = 0; i < packet_size; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0;
+    for (std::size_t i = 0; i < packet_size; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0 ? -1 : 0;
+}
+
+void Tracer::closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits,
+                          Coherence coherence) const {
+    HitLanes lanes;
+    closest_hits(in_lanes(rays), lanes, coherence);
+    for (std::size_t i = 0; i < packet_size; ++i)
+        hits[i] = lanes.instance[i] == no_instance ? Hit{} : lanes[i];
+}
+
+void Tracer::occluded(std::span<const Ray, packet_size> rays, std::span<bool, packet_size> blocked) const {
+    LaneMask lanes;
+    occluded(in_lanes(rays), lanes);
+    for (std::size_t i = 0; i < packet_size; ++i) blocked[i] = lanes[i] != 0;
 }
 
 }  // namespace relumine

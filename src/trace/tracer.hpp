@@ -9,7 +9,7 @@
 #include <span>
 
 #include "base/frame.hpp"
-#include "base/packet.hpp"
+#include "base/lanes.hpp"
 #include "scene/scene_data.hpp"
 
 namespace relumine {
@@ -30,6 +30,40 @@ struct Hit {
     std::uint32_t triangle = 0;
 
     explicit operator bool() const { return instance != no_instance; }
+};
+
+/// Sixteen rays side by side.
+struct RayLanes {
+    Vec3Lanes origin, direction;
+    Lanes<float> t_max;  // < 0: no ray
+    Lanes<std::uint32_t> opacity_seed;
+
+    [[nodiscard]] Ray operator[](std::size_t i) const {
+        return {origin[i], {direction[i]}, t_max[i], opacity_seed[i]};
+    }
+    void set(std::size_t i, const Ray& ray) {
+        origin.set(i, ray.origin);
+        direction.set(i, ray.direction.v);
+        t_max[i] = ray.t_max;
+        opacity_seed[i] = ray.opacity_seed;
+    }
+    void take(std::size_t i, const RayLanes& other, std::size_t j) { set(i, other[j]); }
+};
+
+/// What they have hit.
+struct HitLanes {
+    Lanes<float> t, u, v;
+    Lanes<std::uint32_t> instance, triangle;
+
+    [[nodiscard]] Hit operator[](std::size_t i) const { return {t[i], u[i], v[i], instance[i], triangle[i]}; }
+    void set(std::size_t i, const Hit& hit) {
+        t[i] = hit.t;
+        u[i] = hit.u;
+        v[i] = hit.v;
+        instance[i] = hit.instance;
+        triangle[i] = hit.triangle;
+    }
+    void take(std::size_t i, const HitLanes& other, std::size_t j) { set(i, other[j]); }
 };
 
 /// Whether the rays of a packet start and point nearly alike, as camera rays do: a hint for speed.
@@ -65,6 +99,9 @@ class Tracer {
     void closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits,
                       Coherence coherence) const;
     void occluded(std::span<const Ray, packet_size> rays, std::span<bool, packet_size> blocked) const;
+    /// The same of lanes. Where there is no hit, `instance` alone says so.
+    void closest_hits(const RayLanes& rays, HitLanes& hits, Coherence coherence) const;
+    void occluded(const RayLanes& rays, LaneMask& blocked) const;
 
   private:
     struct Impl;
