@@ -58,6 +58,16 @@ float solid_angle_density(float per_area, float distance2, float distance, float
 
 }  // namespace
 
+void LightLanes::set(std::size_t i, const LightSample& light) {
+    w_in.set(i, light.w_in.v);
+    target.set(i, light.target);
+    distance[i] = light.distance;
+    radiance.set(i, light.radiance);
+    pdf[i] = light.pdf;
+    delta[i] = light.delta ? -1 : 0;
+    drawn[i] = -1;
+}
+
 LightSampler::~LightSampler() = default;
 
 LightSampler::LightSampler(const SceneData& scene, const LightSelection& selection) : scene_(scene) {
@@ -140,6 +150,26 @@ Spectrum LightSampler::emitted(const EmissiveTriangle& light, const Hit& hit) co
     return material_emission(scene_, material, at.uv) * opacity(scene_, material, at);
 }
 
+void LightSampler::EmissiveTriangle::put(TrianglePointLanes& points, std::size_t lane, Point2 u) const {
+    points.corner.set(lane, corner);
+    points.edge1.set(lane, edge1);
+    points.edge2.set(lane, edge2);
+    points.normal.set(lane, normal);
+    points.density[lane] = density;
+    points.offset[lane] = offset;
+    points.radiance.set(lane, radiance);
+    points.double_sided[lane] = double_sided ? -1 : 0;
+    points.u_x[lane] = u.x;
+    points.u_y[lane] = u.y;
+    points.chosen[lane] = -1;
+}
+
+const LightSampler::EmissiveTriangle* LightSampler::even_triangle(std::size_t chosen) const {
+    const LocalLight& light = local_[chosen];
+    if (light.kind != Kind::triangle || triangles_[light.index].varies) return nullptr;
+    return &triangles_[light.index];
+}
+
 std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle& light, Vec3 from,
                                                          Point2 u) const {
     const Point2 b = uniform_triangle(u);
@@ -159,8 +189,20 @@ std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle&
 }
 
 std::size_t LightSampler::choose_local(float u) const {
-    const auto above = std::upper_bound(local_cdf_.begin() + 1, local_cdf_.end() - 1, u);
-    return static_cast<std::size_t>(above - local_cdf_.begin()) - 1;
+    // Finds what upper_bound would, without branches that depend on u: they could not be predicted.
+    std::size_t first = 0;
+    for (std::size_t count = local_.size(); count > 1;) {
+        const std::size_t half = count / 2;
+        first += local_cdf_[first + half] <= u ? half : 0;
+        count -= half;
+    }
+    return first;
+}
+
+LightSampler::LocalChoice LightSampler::choose_local(Point2 u) const {
+    const float choice = rescale(u.x, environment_probability_, local_probability_);
+    const std::size_t chosen = choose_local(choice);
+    return {chosen, {rescale(choice, local_cdf_[chosen], local_cdf_[chosen + 1] - local_cdf_[chosen]), u.y}};
 }
 
 std::optional<LightSample> LightSampler::sample_local(std::size_t chosen, Vec3 from, Point2 u) const {
@@ -196,10 +238,30 @@ std::optional<LightSample> LightSampler::sample(Vec3 from, Point2 u) const {
     if (u.x < environment_probability_)
         return sample_environment({rescale(u.x, 0, environment_probability_), u.y});
     if (local_probability_ <= 0) return {};
-    const float choice = rescale(u.x, environment_probability_, local_probability_);
-    const std::size_t chosen = choose_local(choice);
-    const float left = rescale(choice, local_cdf_[chosen], local_cdf_[chosen + 1] - local_cdf_[chosen]);
-    return sample_local(chosen, from, {left, u.y});
+    const LocalChoice chosen = choose_local(u);
+    return sample_local(chosen.light, from, chosen.u);
+}
+
+void LightSampler::sample(const Vec3Lanes& from, const Lanes<float>& u_x, const Lanes<float>& u_y,
+                          const LaneMask& lanes, LightLanes& samples) const {
+    TrianglePointLanes points;
+    points.chosen.fill(0);
+    samples.drawn.fill(0);
+    bool any_triangle = false;
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        if (lanes[i] == 0) continue;
+        const Point2 u{u_x[i], u_y[i]};
+        if (u.x >= environment_probability_ && local_probability_ > 0) {
+            const LocalChoice chosen = choose_local(u);
+            if (const EmissiveTriangle* triangle = even_triangle(chosen.light)) {
+                triangle->put(points, i, chosen.u);
+                any_triangle = true;
+                continue;
+            }
+        }
+        if (const auto drawn = sample(from[i], u)) samples.set(i, *drawn);
+    }
+    if (any_triangle) sample_triangles(points, from, samples);
 }
 
 float LightSampler::pdf(Vec3 from, const SurfacePoint& hit) const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/lanes.hpp"
 #include "shading/environment_light.hpp"
 #include "shading/surface_point.hpp"
 
@@ -19,6 +20,25 @@ struct LightSample {
     Spectrum radiance;  // incident; for delta lights: irradiance on a surface that faces the light
     float pdf = 0;      // per steradian; for delta lights: probability
     bool delta = false;
+};
+
+/// LightSample for sixteen points.
+struct LightLanes {
+    Vec3Lanes w_in, target;
+    Lanes<float> distance;
+    SpectrumLanes radiance;
+    Lanes<float> pdf;
+    LaneMask delta, drawn;  // drawn: whether there is a sample
+
+    void set(std::size_t lane, const LightSample& light);
+};
+
+/// Points on emissive triangles of even radiance, before their direction and density are known.
+struct TrianglePointLanes {
+    Vec3Lanes corner, edge1, edge2, normal;
+    Lanes<float> density, offset, u_x, u_y;
+    SpectrumLanes radiance;
+    LaneMask double_sided, chosen;
 };
 
 /// Which part of the light is sampled, and how.
@@ -40,6 +60,11 @@ class LightSampler {
     /// The same from two numbers: what choosing leaves of u.x serves again, so that the points on every light
     /// are as well spread as the numbers are.
     [[nodiscard]] std::optional<LightSample> sample(Vec3 from, Point2 u) const;
+
+    /// The same for the points of `lanes`. Most lights are triangles, whose samples are computed side by
+    /// side.
+    void sample(const Vec3Lanes& from, const Lanes<float>& u_x, const Lanes<float>& u_y,
+                const LaneMask& lanes, LightLanes& samples) const;
 
     /// Density with which `sample` at `from` would have drawn the emissive surface point `hit` (seen from
     /// `from`).
@@ -63,6 +88,8 @@ class LightSampler {
         std::uint32_t instance, triangle;
         Spectrum radiance;  // where it is the same everywhere
         bool double_sided, varies;
+
+        void put(TrianglePointLanes& points, std::size_t lane, Point2 u) const;
     };
     enum class Kind : std::uint8_t { triangle, point, spot, directional };
     struct LocalLight {
@@ -76,7 +103,14 @@ class LightSampler {
     [[nodiscard]] std::optional<LightSample> sample_triangle(const EmissiveTriangle& light, Vec3 from,
                                                              Point2 u) const;
     [[nodiscard]] std::optional<LightSample> sample_environment(Point2 u) const;
+    /// A light of local_ and a point on it.
+    struct LocalChoice {
+        std::size_t light;
+        Point2 u;
+    };
     [[nodiscard]] std::size_t choose_local(float u) const;  // of local_
+    [[nodiscard]] LocalChoice choose_local(Point2 u) const;
+    [[nodiscard]] const EmissiveTriangle* even_triangle(std::size_t chosen) const;  // or null
     [[nodiscard]] std::optional<LightSample> sample_local(std::size_t chosen, Vec3 from, Point2 u) const;
     [[nodiscard]] Spectrum emitted(const EmissiveTriangle& light, const Hit& hit) const;
 
@@ -88,6 +122,9 @@ class LightSampler {
     std::vector<LocalLight> local_;
     std::vector<float> local_cdf_;  // local_.size() + 1
 };
+
+/// LightSampler::sample of the chosen triangles; leaves other lanes of `samples` alone.
+void sample_triangles(const TrianglePointLanes& points, const Vec3Lanes& from, LightLanes& samples);
 
 /// The light of point, spot and directional lights, one sample each; for methods that loop over all of them.
 [[nodiscard]] std::vector<LightSample> delta_light_samples(const SceneData& scene, Vec3 from);

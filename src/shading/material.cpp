@@ -71,6 +71,15 @@ Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, f
                          masking);
 }
 
+std::optional<MetallicRoughness> as_layers(const Bsdf& bsdf) {
+    if (const auto* lambert = std::get_if<Lambert>(&bsdf))
+        return MetallicRoughness{lambert->albedo, {}, {}, {}, {}, {}};
+    if (const auto* metal = std::get_if<RoughConductor>(&bsdf))
+        return MetallicRoughness{{}, {}, {}, metal->f0, Spectrum{1}, metal->ggx};
+    const auto* layers = std::get_if<MetallicRoughness>(&bsdf);
+    return layers && !layers->smooth ? std::optional(*layers) : std::nullopt;
+}
+
 UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(scene.materials.data()) {
     for (const Material& m : scene.materials) {
         const bool varies = m.base_color_texture || m.metallic_roughness_texture || m.transmission_texture
@@ -78,6 +87,8 @@ UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(sce
         SurfacePoint anywhere;
         anywhere.material = &m;
         bsdfs_.push_back(varies ? std::nullopt : std::optional(make_bsdf(scene, anywhere, masking, 0)));
+        const bool plain = !varies && !m.normal_texture && !attenuates(m);
+        layers_.push_back(plain ? as_layers(*bsdfs_.back()) : std::nullopt);
     }
 }
 

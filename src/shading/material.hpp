@@ -13,6 +13,10 @@ namespace relumine {
 /// the opaque layering.
 [[nodiscard]] Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u);
 
+/// The same reflection in the form of the layering: of Lambert, rough conductors and rough layers; empty for
+/// others.
+[[nodiscard]] std::optional<MetallicRoughness> as_layers(const Bsdf& bsdf);
+
 /// The BSDFs of the materials that are the same everywhere and from both sides, made once.
 class UniformBsdfs {
   public:
@@ -24,9 +28,17 @@ class UniformBsdfs {
         return bsdf && !p.has_vertex_color ? &*bsdf : nullptr;
     }
 
+    /// The same as layers, for surfaces without a normal map whose inside does not attenuate; null for
+    /// others.
+    [[nodiscard]] const MetallicRoughness* find_layers(MaterialId material) const {
+        const auto& layers = layers_[index(material)];
+        return layers ? &*layers : nullptr;
+    }
+
   private:
     const Material* first_;
-    std::vector<std::optional<Bsdf>> bsdfs_;  // per material
+    std::vector<std::optional<Bsdf>> bsdfs_;                // per material
+    std::vector<std::optional<MetallicRoughness>> layers_;  // per material
 };
 
 /// Radiance that the surface emits towards the viewer of `p`, W·sr⁻¹·m⁻².

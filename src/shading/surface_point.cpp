@@ -7,10 +7,6 @@
 namespace relumine {
 namespace {
 
-/// The least cosine between viewer and shading normal; a smaller one would leave the viewer under the
-/// surface.
-constexpr float min_view_cosine = 1e-3f;
-
 template <typename T>
 T interpolate(const std::vector<T>& values, const Triangle& triangle, const Hit& hit) {
     const auto& [a, b, c] = triangle.vertex;
@@ -103,10 +99,18 @@ std::array<Vec3, 3> world_triangle(const SceneData& scene, std::uint32_t instanc
     return corners;
 }
 
+ShadingTriangle shading_triangle(const SceneData& scene, const Hit& hit) {
+    const Instance& instance = scene.instances[hit.instance];
+    const Mesh& mesh = scene.meshes[index(instance.mesh)];
+    const NormalMapper map(instance);
+    ShadingTriangle triangle{world_triangle(scene, hit.instance, hit.triangle), {}, map.winding()};
+    if (!mesh.normals.empty())
+        triangle.normal = map.normal(interpolate(mesh.normals, mesh.triangles[hit.triangle], hit));
+    return triangle;
+}
+
 float rounding_offset(const std::array<Vec3, 3>& corners) {
-    constexpr float units_in_last_place = 32;
-    return units_in_last_place * 0x1p-24f
-           * std::max({max_abs(corners[0]), max_abs(corners[1]), max_abs(corners[2])});
+    return rounding_units * std::max({max_abs(corners[0]), max_abs(corners[1]), max_abs(corners[2])});
 }
 
 TextureCoordinates texture_coordinates(const Mesh& mesh, const Hit& hit) {

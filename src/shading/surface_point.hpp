@@ -34,6 +34,21 @@ struct TextureCoordinates {
 [[nodiscard]] std::array<Vec3, 3> world_triangle(const SceneData& scene, std::uint32_t instance,
                                                  std::uint32_t triangle);
 
+/// What shading needs to know of a triangle without a normal map.
+struct ShadingTriangle {
+    std::array<Vec3, 3> corners;  // world space, in the mesh's order
+    Vec3 normal;                  // the vertices' normals at the hit, of any length; 0: flat shading
+    float winding = 1;            // −1 where the transform to world space mirrors, so reverses that order
+};
+[[nodiscard]] ShadingTriangle shading_triangle(const SceneData& scene, const Hit& hit);
+
+/// The least cosine between viewer and shading normal; a smaller one would leave the viewer under the
+/// surface.
+inline constexpr float min_view_cosine = 1e-3f;
+
+/// Of the largest coordinate: a bound on rounding errors of points on a triangle, times a safety factor.
+inline constexpr float rounding_units = 32 * 0x1p-24f;
+
 /// A bound on the rounding errors of points on a triangle with these corners, times a safety factor.
 [[nodiscard]] float rounding_offset(const std::array<Vec3, 3>& corners);
 
