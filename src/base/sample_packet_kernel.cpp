@@ -190,22 +190,30 @@ HWY_EXPORT(sobol2);
 HWY_EXPORT(random_floats);
 HWY_EXPORT(random_bits);
 
-SamplePacket::SamplePacket(std::span<const SampleStream, packet_size> streams)
-    : streams_(streams), set_(streams[0].set) {
+SamplePacket::SamplePacket(std::span<const SampleStream, packet_size> streams) : set_(streams[0].set) {
     mixed_or_stratified_ =
         set_ == PointSet::stratified
         || std::ranges::any_of(streams, [&](const SampleStream& s) { return s.set != set_; });
     for (std::size_t i = 0; i < packet_size; ++i) {
+        streams_[i] = &streams[i];
         keys_[i] = streams[i].key;
         index_hashes_[i] = mix(streams[i].index + 0x9e3779b97f4a7c15u);
         reversed_indices_[i] = reverse_bits(streams[i].index);
     }
 }
 
+void SamplePacket::take(std::size_t lane, const SamplePacket& other, std::size_t other_lane) {
+    mixed_or_stratified_ = mixed_or_stratified_ || other.mixed_or_stratified_ || set_ != other.set_;
+    streams_[lane] = other.streams_[other_lane];
+    keys_[lane] = other.keys_[other_lane];
+    index_hashes_[lane] = other.index_hashes_[other_lane];
+    reversed_indices_[lane] = other.reversed_indices_[other_lane];
+}
+
 void SamplePacket::next1(Dim dim, std::uint32_t vertex, Lanes<float>& u) const {
     const std::uint64_t dimension = dimension_bits(dim, vertex);
     if (mixed_or_stratified_) {
-        for (std::size_t i = 0; i < packet_size; ++i) u[i] = streams_[i].next1(dim, vertex);
+        for (std::size_t i = 0; i < packet_size; ++i) u[i] = streams_[i]->next1(dim, vertex);
     } else if (set_ == PointSet::sobol) {
         HWY_DYNAMIC_DISPATCH(sobol1)(keys_.data(), reversed_indices_.data(), dimension, u.data());
     } else {
@@ -219,7 +227,7 @@ void SamplePacket::next2(Dim dim, std::uint32_t vertex, Lanes<float>& x, Lanes<f
     const std::uint64_t dimension = dimension_bits(dim, vertex);
     if (mixed_or_stratified_) {
         for (std::size_t i = 0; i < packet_size; ++i) {
-            const Point2 u = streams_[i].next2(dim, vertex);
+            const Point2 u = streams_[i]->next2(dim, vertex);
             x[i] = u.x;
             y[i] = u.y;
         }

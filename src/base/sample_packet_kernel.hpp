@@ -5,7 +5,7 @@
 #include <array>
 #include <span>
 
-#include "base/packet.hpp"
+#include "base/lanes.hpp"
 #include "base/sample_stream.hpp"
 
 namespace relumine {
@@ -15,10 +15,13 @@ namespace relumine {
 class SamplePacket {
   public:
     template <typename T>
-    using Lanes = std::array<T, packet_size>;
+    using Lanes = relumine::Lanes<T>;
 
     /// The streams must outlive the packet.
     explicit SamplePacket(std::span<const SampleStream, packet_size> streams);
+
+    /// Puts another packet's stream into a lane.
+    void take(std::size_t lane, const SamplePacket& other, std::size_t other_lane);
 
     /// SampleStream::next1, for all sixteen.
     void next1(Dim dim, std::uint32_t vertex, Lanes<float>& u) const;
@@ -28,7 +31,7 @@ class SamplePacket {
     void bits(Dim dim, std::uint32_t vertex, Lanes<std::uint32_t>& bits) const;
 
   private:
-    std::span<const SampleStream, packet_size> streams_;
+    std::array<const SampleStream*, packet_size> streams_;
     bool mixed_or_stratified_;  // point sets that have no kernel
     PointSet set_;              // of all streams, unless mixed
     alignas(64) Lanes<std::uint64_t> keys_;

@@ -54,6 +54,21 @@ TEST(SamplePacket, HasTheBitsOfItsStreams) {
     });
 }
 
+TEST(SamplePacket, TakesStreamsFromOthers) {
+    on_every_target([] {
+        for (const PointSet other_set : {PointSet::sobol, PointSet::stratified}) {
+            Streams streams = random_streams(1, PointSet::sobol);
+            const Streams others = random_streams(2, other_set);
+            SamplePacket packet(streams);
+            packet.take(3, SamplePacket(others), 7);
+            SamplePacket::Lanes<float> u;
+            packet.next1(Dim::lobe, 2, u);
+            for (std::size_t i = 0; i < packet_size; ++i)
+                EXPECT_EQ(u[i], (i == 3 ? others[7] : streams[i]).next1(Dim::lobe, 2));
+        }
+    });
+}
+
 TEST(SamplePacket, MayMixPointSets) {
     on_every_target([] {
         for (std::uint64_t seed = 0; seed < 50; ++seed) {

@@ -41,15 +41,26 @@ CameraPacket trace_block(const View& view, const Tracer& tracer, int x0, int y0,
 
 }  // namespace
 
-void for_each_camera_packet(const View& view, const Tracer& tracer, Tile& tile,
-                            const std::function<void(const CameraPacket&)>& use) {
+void for_each_camera_batch(const View& view, const Tracer& tracer, Tile& tile,
+                           const std::function<void(std::span<const CameraPacket>)>& use) {
     const PixelRect& r = tile.rect;
+    std::vector<CameraPacket> batch;
     for (int y0 = r.y0 / block * block; y0 < r.y1; y0 += block)
         for (int x0 = r.x0 / block * block; x0 < r.x1; x0 += block)
             for (std::uint32_t s = 0; s < tile.sample_count; ++s) {
                 tile.rays.add(RayPurpose::camera, packet_size);
-                use(trace_block(view, tracer, x0, y0, tile.first_sample + s));
+                batch.push_back(trace_block(view, tracer, x0, y0, tile.first_sample + s));
+                if (batch.size() < batch_packets && s + 1 < tile.sample_count) continue;
+                use(batch);
+                batch.clear();
             }
+}
+
+void for_each_camera_packet(const View& view, const Tracer& tracer, Tile& tile,
+                            const std::function<void(const CameraPacket&)>& use) {
+    for_each_camera_batch(view, tracer, tile, [&](std::span<const CameraPacket> batch) {
+        for (const CameraPacket& packet : batch) use(packet);
+    });
 }
 
 FirstSurface first_surface(const Transport& t, const CameraSample& sample) {

@@ -38,6 +38,10 @@ using CameraPacket = std::array<CameraSample, packet_size>;
 void for_each_camera_packet(const View& view, const Tracer& tracer, Tile& tile,
                             const std::function<void(const CameraPacket&)>& use);
 
+/// The same in batches of packets: successive samples of the same pixels.
+void for_each_camera_batch(const View& view, const Tracer& tracer, Tile& tile,
+                           const std::function<void(std::span<const CameraPacket>)>& use);
+
 /// What the layers about surfaces show of a camera sample.
 [[nodiscard]] FirstSurface first_surface(const Transport& t, const CameraSample& sample);
 

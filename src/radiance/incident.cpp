@@ -40,7 +40,8 @@ RadiancePacket incident_radiance(const IncidentRadiance& source, const std::arra
         paths[i].alive = hits[i] && depth < limit;
     }
     if (depth >= limit) return sums;
-    const RadiancePacket reflected = path_radiance(source.transport, paths, limit, streams, counts);
+    RadiancePacket reflected;
+    path_radiance(source.transport, {&paths, 1}, limit, {&streams, 1}, {&reflected, 1}, counts);
     for (std::size_t i = 0; i < packet_size; ++i) sums[i].indirect = reflected[i].total();
     return sums;
 }

@@ -26,19 +26,40 @@ struct PathState {
 
 inline constexpr std::uint32_t unlimited_depth = 0xffffffffu;
 
+/// Russian roulette may end paths of this many scattering vertices.
+constexpr bool may_end(std::uint32_t depth) { return depth > 4; }
+/// The most it lets survive: even paths that have lost nothing end at some time.
+constexpr float max_survival(std::uint32_t depth) { return depth < 256 ? 1.0f : 0.95f; }
+
 using PathPacket = std::array<PathState, packet_size>;
 using StreamPacket = std::array<SampleStream, packet_size>;
 using RadiancePacket = std::array<SplitRadiance, packet_size>;
 
+/// The most packets of paths that are followed together.
+inline constexpr std::size_t batch_packets = 8;
+
 /// Radiance along each living path's ray from its hit on: next-event estimation with MIS, BSDF sampling,
 /// Russian roulette from the fifth vertex on. Unbiased for paths of up to `max_depth` scattering vertices in
-/// all. The paths are followed in step, so that their rays are traced and their random numbers drawn as
-/// packets: the same sixteen paths must always go together, and all that live be of the same depth.
-[[nodiscard]] RadiancePacket path_radiance(const Transport& t, PathPacket paths, std::uint32_t max_depth,
-                                           const StreamPacket& streams, RayCounts& rays);
+/// all. At most batch_packets packets; the results go to `sums`, which begin at zero. The paths are followed
+/// in step, so that their rays are traced, their surfaces shaded and their random numbers drawn as packets,
+/// and those that live on move together: the same paths must always go together, and all that live be of the
+/// same depth.
+void path_radiance(const Transport& t, std::span<const PathPacket> paths, std::uint32_t max_depth,
+                   std::span<const StreamPacket> streams, std::span<RadiancePacket> sums, RayCounts& rays);
 
 /// The vertex where the path's ray has hit; attenuates the throughput where the ray went through a solid.
 [[nodiscard]] Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stream);
+
+/// Adds radiance to the sum that light of so many scatterings belongs to.
+inline void add(SplitRadiance& sum, std::uint32_t scatterings, Spectrum radiance) {
+    (scatterings == 0 ? sum.emission : scatterings == 1 ? sum.direct : sum.indirect) += radiance;
+}
+
+/// Ends paths by their throughput, or makes up for those that were ended.
+[[nodiscard]] bool survives(PathState& path, float u);
+
+/// scatter_path by the given numbers.
+void scatter(PathState& path, const Vertex& vertex, BsdfRandom u, std::uint32_t opacity_seed);
 
 /// Turns the path's ray into a direction drawn from the BSDF; the hit is not known yet. Where the path ends,
 /// it is not alive after.
