@@ -73,8 +73,7 @@ struct Corner {
 };
 
 /// The kernel's operations one by one; hemisphere_to_square up to rounding.
-Corner project_corner(Vec3 q, const Frame& frame) {
-    const Vec3 w = frame.to_local({q}).v;
+Corner project_corner(Vec3 w) {
     const float length = std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z), ax = std::abs(w.x), ay = std::abs(w.y);
     const float major = std::max(std::max(ax, ay), length * 1e-12f);
     const float inverse = 1 / std::max(length * major, 1e-37f), cosine = w.z * (major * inverse);
@@ -91,22 +90,27 @@ Box bounds(const std::array<Corner, 4>& p) {
 }
 
 ScalarProjection project_one(const Surfels& s, std::size_t i, const Projection& projection) {
-    std::array<Corner, 4> now, before;
+    std::array<Corner, 4> now;
+    Vec3 middle;
+    const Vec3 shift = projection.frame.to_local({projection.shift / s.scale}).v;
     for (std::size_t c = 0; c < 4; ++c) {
         const auto plane = [&](std::size_t axis) {
             half h;
             h.setBits(s.corners[(3 * c + axis) * s.stride + i]);
-            return static_cast<float>(h) * s.scale;
+            return static_cast<float>(h);
         };
-        const Vec3 q{plane(0), plane(1), plane(2)};
-        now[c] = project_corner(q + projection.shift, projection.frame);
-        before[c] = project_corner(q, projection.frame);
+        const Vec3 q = projection.frame.to_local({{plane(0), plane(1), plane(2)}}).v;
+        now[c] = project_corner(q + shift);
+        middle = middle + q;
     }
     const TexelRect& t = s.texels[i];
     const float per_texel = static_cast<float>(mask_side) / static_cast<float>(projection.side);
     const Box texels{t.u * per_texel, t.u * per_texel + t.width * per_texel, t.v * per_texel,
                      t.v * per_texel + t.height * per_texel};
-    const Box mask = bounds(now), old = projection.rotated ? bounds(before) : texels;
+    const Box mask = bounds(now);
+    const Corner m = project_corner(middle);
+    const float width = (texels.x1 - texels.x0) * 0.5f, height = (texels.y1 - texels.y0) * 0.5f;
+    const Box old = projection.rotated ? Box{m.x - width, m.x + width, m.y - height, m.y + height} : texels;
     const bool above = std::max({now[0].cosine, now[1].cosine, now[2].cosine, now[3].cosine}) > 0;
     const bool faces =
         (now[1].x - now[2].x) * (now[3].y - now[0].y) - (now[1].y - now[2].y) * (now[3].x - now[0].x) > 0;
@@ -147,8 +151,7 @@ TEST(ProjectKernel, AgreesWithTheMap) {
     for (std::uint64_t i = 0; i < 1000; ++i) {
         const LocalDir w{random_direction(i, 1)};
         const Point2 p = hemisphere_to_square(w);
-        const Corner c =
-            project_corner(w.v * uniform(i, 2, 0.1f, 10), Frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+        const Corner c = project_corner(w.v * uniform(i, 2, 0.1f, 10));
         EXPECT_NEAR(c.x, p.x * mask_side, 0.01);
         EXPECT_NEAR(c.y, p.y * mask_side, 0.01);
     }

@@ -46,10 +46,13 @@ HWY_INLINE VF octant_of(VF x) {
     return hn::Mul(sum, x);
 }
 
+HWY_INLINE Vec3s add(const Vec3s& a, const Vec3s& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+
 /// hemisphere_to_square of a vector that need not be unit, in bits.
-HWY_INLINE SquarePoint to_square(const Vec3s& q, const Frame& frame) {
+HWY_INLINE SquarePoint to_square(const Vec3s& w) {
     const F f;
-    const Vec3s w{dot(q, frame.s), dot(q, frame.t), dot(q, frame.n)};
     const VF length2 = hn::Add(hn::Add(hn::Mul(w.x, w.x), hn::Mul(w.y, w.y)), hn::Mul(w.z, w.z));
     const VF length = hn::Sqrt(length2), ax = hn::Abs(w.x), ay = hn::Abs(w.y);
     const auto x_major = hn::Ge(ax, ay);
@@ -103,21 +106,16 @@ HWY_INLINE VU pack(const Box& box) {
     return hn::Or(x, hn::ShiftLeft<16>(y));
 }
 
-HWY_INLINE Vec3s corner(const Surfels& surfels, std::size_t at, std::size_t number) {
+/// In the receiver's frame, as seen from the record.
+HWY_INLINE Vec3s corner(const Surfels& surfels, std::size_t at, std::size_t number, const Frame& frame) {
     const F f;
     const hn::Rebind<hwy::float16_t, F> h;
     const auto plane = [&](std::size_t axis) {
         const std::uint16_t* halves = &surfels.corners[(3 * number + axis) * surfels.stride + at];
-        return hn::Mul(hn::PromoteTo(f, hn::LoadU(h, reinterpret_cast<const hwy::float16_t*>(halves))),
-                       hn::Set(f, surfels.scale));
+        return hn::PromoteTo(f, hn::LoadU(h, reinterpret_cast<const hwy::float16_t*>(halves)));
     };
-    return {plane(0), plane(1), plane(2)};
-}
-
-HWY_INLINE Vec3s shifted(const Vec3s& q, Vec3 shift) {
-    const F f;
-    return {hn::Add(q.x, hn::Set(f, shift.x)), hn::Add(q.y, hn::Set(f, shift.y)),
-            hn::Add(q.z, hn::Set(f, shift.z))};
+    const Vec3s q{plane(0), plane(1), plane(2)};
+    return {dot(q, frame.s), dot(q, frame.t), dot(q, frame.n)};
 }
 
 /// The surfels' rectangles of texels, in bits.
@@ -152,22 +150,36 @@ HWY_INLINE hn::Mask<F> usable(const SquarePoint (&p)[4], const Box& box, const B
     return hn::And(faces, fits);
 }
 
+/// A box of the same size around another point, halved.
+HWY_INLINE Box centered(const Box& size, const SquarePoint& center) {
+    const F f;
+    const VF half = hn::Set(f, 0.5f);
+    const VF width = hn::Mul(hn::Sub(size.x1, size.x0), half),
+             height = hn::Mul(hn::Sub(size.y1, size.y0), half);
+    return {hn::Sub(center.x, width), hn::Add(center.x, width), hn::Sub(center.y, height),
+            hn::Add(center.y, height)};
+}
+
 void project(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
              BitRect* masks, BitRect* trails) {
     const U u;
+    const F f;
     const float bits_per_texel = static_cast<float>(mask_side) / static_cast<float>(projection.side);
+    const Vec3 shift = projection.frame.to_local({projection.shift / surfels.scale}).v;
+    const Vec3s shifts{hn::Set(f, shift.x), hn::Set(f, shift.y), hn::Set(f, shift.z)};
     for (std::size_t i = begin; i < end; i += hn::Lanes(u)) {
-        SquarePoint now[4], before[4];
+        SquarePoint now[4];
+        Vec3s middle{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
         for (std::size_t c = 0; c < 4; ++c) {
-            const Vec3s q = corner(surfels, i, c);
-            now[c] = to_square(shifted(q, projection.shift), projection.frame);
-            if (projection.rotated) before[c] = to_square(q, projection.frame);
+            const Vec3s q = corner(surfels, i, c, projection.frame);
+            now[c] = to_square(add(q, shifts));
+            middle = add(middle, q);
         }
         const Box texels = texel_box(surfels, i, bits_per_texel), mask = bounds(now);
-        const Box old = projection.rotated ? bounds(before) : texels;
         const auto above = above_horizon(now), used = hn::And(above, usable(now, mask, texels));
         hn::StoreU(hn::IfThenElseZero(hn::RebindMask(u, used), pack(mask)), u,
                    reinterpret_cast<std::uint32_t*>(masks + (i - begin)));
+        const Box old = projection.rotated ? centered(texels, to_square(middle)) : texels;
         hn::StoreU(pack(choose(above, enclosing(old, mask), old)), u,
                    reinterpret_cast<std::uint32_t*>(trails + (i - begin)));
     }
