@@ -19,53 +19,57 @@ namespace hn = hwy::HWY_NAMESPACE;
 using U = hn::CappedTag<std::uint32_t, surfel_padding>;
 using VU = hn::Vec<U>;
 
-/// Most rectangles are narrow: the bits of a row that they touch fit into 32, read and written together.
-constexpr std::uint32_t narrow = 16;
-
 /// Whether a row of a surfel's texels fits into one vector, from where it is stretched by a table look-up.
 constexpr bool row_fits = hn::MaxLanes(U()) >= max_surfel_side;
 
-/// A window of 32 bits of each row that holds bits x0 … x0 + narrow − 1.
-struct Window {
-    std::size_t byte;     // of the row
-    std::uint32_t shift;  // of bit x0 within the window
+/// A row of bits in one register. Rows are always read and written whole: what one surfel has written is then
+/// forwarded to the next, which a load wider than the store, or across two of them, would have to wait for.
+struct RowBits {
+#if HWY_TARGET == HWY_SCALAR
+    MaskRow v;
+    static HWY_INLINE RowBits load(const MaskRow& row) { return {row}; }
+    HWY_INLINE void store(MaskRow& row) const { row = v; }
+    HWY_INLINE RowBits operator&(RowBits b) const { return {v & b.v}; }
+    HWY_INLINE RowBits operator|(RowBits b) const { return {v | b.v}; }
+    HWY_INLINE RowBits without(RowBits b) const { return {v & ~b.v}; }
+    [[nodiscard]] HWY_INLINE bool any() const { return v.any(); }
+#else
+    using R = hn::FixedTag<std::uint64_t, 2>;
+    hn::Vec<R> v;
+    static HWY_INLINE RowBits load(const MaskRow& row) { return {hn::LoadU(R(), &row.low)}; }
+    HWY_INLINE void store(MaskRow& row) const { hn::StoreU(v, R(), &row.low); }
+    HWY_INLINE RowBits operator&(RowBits b) const { return {hn::And(v, b.v)}; }
+    HWY_INLINE RowBits operator|(RowBits b) const { return {hn::Or(v, b.v)}; }
+    HWY_INLINE RowBits without(RowBits b) const { return {hn::AndNot(b.v, v)}; }
+    [[nodiscard]] HWY_INLINE bool any() const { return !hn::AllTrue(R(), hn::Eq(v, hn::Zero(R()))); }
+#endif
+};
 
-    explicit HWY_INLINE Window(std::uint32_t x0)
-        : byte(std::min(x0 / 8, 12u)), shift(x0 - 8 * static_cast<std::uint32_t>(byte)) {}
-    HWY_INLINE std::uint32_t load(const MaskRow* row) const {
-        std::uint32_t bits;
-        std::memcpy(&bits, reinterpret_cast<const char*>(row) + byte, sizeof bits);
-        return bits;
-    }
-    HWY_INLINE void store(MaskRow* row, std::uint32_t bits) const {
-        std::memcpy(reinterpret_cast<char*>(row) + byte, &bits, sizeof bits);
+/// So many columns of a rectangle are drawn at a time.
+constexpr std::uint32_t widest = 32;
+
+/// Columns [x0, x0 + width) of the rows of the open bits.
+struct OpenColumns {
+    RowBits span;
+    std::size_t byte;     // of the row, from where eight hold the columns
+    std::uint32_t shift;  // of column x0 therein
+    std::uint64_t columns;
+
+    HWY_INLINE OpenColumns(std::uint32_t x0, std::uint32_t width)
+        : span(RowBits::load(bit_span(static_cast<int>(x0), static_cast<int>(x0 + width)))),
+          byte(std::min(x0 / 8, 8u)),
+          shift(x0 - 8 * static_cast<std::uint32_t>(byte)),
+          columns((std::uint64_t{1} << width) - 1) {}
+
+    /// Takes what is open of a row; bit 0 of it is column x0.
+    HWY_INLINE std::uint64_t take(MaskRow& open) const {
+        std::uint64_t bits;
+        std::memcpy(&bits, reinterpret_cast<const char*>(&open) + byte, sizeof bits);
+        RowBits::load(open).without(span).store(open);
+        return bits >> shift & columns;
     }
 };
 static_assert(std::endian::native == std::endian::little);
-
-/// The rows of a narrow rectangle's masks.
-struct NarrowRows {
-    std::uint32_t count;
-    Window window;
-    std::uint32_t span;  // within the window
-    MaskRow *open, *covered;
-
-    HWY_INLINE NarrowRows(const BitRect& rect, const Canvas& canvas)
-        : count(static_cast<std::uint32_t>(rect.height())),
-          window(rect.x0),
-          span(((1u << rect.width()) - 1) << window.shift),
-          open(&canvas.open.rows[rect.y0]),
-          covered(&canvas.covered.rows[rect.y0]) {}
-
-    /// Takes what is open of row y, now covered; bit 0 is the rectangle's first column.
-    HWY_INLINE std::uint32_t take(std::uint32_t y) const {
-        const std::uint32_t bits = window.load(open + y), fresh = bits & span;
-        if (fresh == 0) return 0;
-        window.store(open + y, bits & ~span);
-        window.store(covered + y, window.load(covered + y) | fresh);
-        return fresh >> window.shift;
-    }
-};
 
 /// The lanes from `first` on of a surfel's row, stretched to its rectangle's width.
 HWY_INLINE VU stretched(const std::uint32_t* texels, const TexelSteps& steps, std::uint32_t first) {
@@ -115,8 +119,7 @@ struct Brush {
     }
 };
 
-/// Single texels are the most frequent surfels: one colour over a few bits. Without a way of their own a
-/// whole reprojection takes 5 % longer.
+/// Single texels are the most frequent surfels: one colour over a few bits.
 constexpr std::uint32_t dot_width = 4;
 
 HWY_INLINE void dot_row(std::uint32_t color, std::uint64_t fresh, std::uint32_t* out) {
@@ -128,45 +131,54 @@ HWY_INLINE void dot_row(std::uint32_t color, std::uint64_t fresh, std::uint32_t*
     }
 }
 
+/// Black texels: the canvas is black where nothing has been drawn.
+/// `drawn`: bits are added to it, any row's.
+HWY_INLINE void draw_black(const BitRect& rect, Mask& open, RowBits& drawn) {
+    const RowBits span = RowBits::load(bit_span(rect.x0, rect.x1));
+    const std::size_t y1 = rect.y1;
+    for (std::size_t y = rect.y0; y < y1; ++y) {
+        const RowBits row = RowBits::load(open.rows[y]);
+        row.without(span).store(open.rows[y]);
+        drawn = drawn | (row & span);
+    }
+}
+
 template <bool with_direct>
 HWY_INLINE bool draw_dot(const Brush& brush, const Brush& direct, const Canvas& canvas) {
-    const NarrowRows rows(brush.rect, canvas);
+    const BitRect& rect = brush.rect;
     const std::uint32_t color = brush.texels[0], direct_color = direct.texels[0];
-    const std::size_t at = std::size_t{brush.rect.y0} * mask_side + brush.rect.x0;
-    std::uint32_t* const radiance = canvas.radiance.data() + at;
-    std::uint32_t* const direct_radiance = canvas.direct.data() + at;
-    std::uint32_t any = 0;
-    for (std::uint32_t y = 0; y < rows.count; ++y) {
-        const std::uint32_t fresh = rows.take(y);
+    const OpenColumns columns(rect.x0, static_cast<std::uint32_t>(rect.width()));
+    std::uint64_t any = 0;
+    for (std::size_t y = rect.y0; y < rect.y1; ++y) {
+        const std::uint64_t fresh = columns.take(canvas.open.rows[y]);
         if (fresh == 0) continue;
         any |= fresh;
-        dot_row(color, fresh, radiance + y * mask_side);
-        if constexpr (with_direct) dot_row(direct_color, fresh, direct_radiance + y * mask_side);
+        dot_row(color, fresh, &canvas.radiance[y * mask_side + rect.x0]);
+        if constexpr (with_direct) dot_row(direct_color, fresh, &canvas.direct[y * mask_side + rect.x0]);
     }
     return any != 0;
 }
 
+/// Surfels whose rectangle's rows fit into one vector: a row of texels is stretched once for all rows that
+/// show it.
 template <bool with_direct>
 HWY_INLINE bool draw_narrow(const Brush& brush, const Brush& direct, const Canvas& canvas) {
-    const NarrowRows rows(brush.rect, canvas);
-    const auto width = static_cast<std::uint32_t>(brush.rect.width());
-    std::uint32_t* const radiance = canvas.radiance.data();
-    const bool one_vector = width <= hn::Lanes(U());
-    VU row = hn::Zero(U());  // where one vector holds it: the texture's row, kept while it stays the same
-    std::uint32_t any = 0, row_number = ~0u;
-    for (std::uint32_t y = 0; y < rows.count; ++y) {
-        const std::uint32_t fresh = rows.take(y);
+    const BitRect& rect = brush.rect;
+    const auto width = static_cast<std::uint32_t>(rect.width());
+    const OpenColumns columns(rect.x0, width);
+    std::uint32_t* const out = &canvas.radiance[rect.y0 * mask_side + rect.x0];
+    VU row = hn::Zero(U());
+    std::uint64_t any = 0;
+    std::uint32_t row_number = ~0u;
+    for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(rect.height()); ++y) {
+        const std::uint64_t fresh = columns.take(canvas.open.rows[rect.y0 + y]);
         if (fresh == 0) continue;
         any |= fresh;
-        if (one_vector) {
-            if (const std::uint32_t wanted = brush.rows(y); wanted != row_number) {
-                row_number = wanted;
-                row = stretched(brush.texels + wanted * brush.side, brush.columns, 0);
-            }
-            store_under_mask(row, fresh, radiance + (brush.rect.y0 + y) * mask_side + brush.rect.x0);
-        } else {
-            brush.write(y, 0, width, fresh, radiance);
+        if (const std::uint32_t wanted = brush.rows(y); wanted != row_number) {
+            row_number = wanted;
+            row = stretched(brush.texels + wanted * brush.side, brush.columns, 0);
         }
+        store_under_mask(row, fresh, out + y * mask_side);
         if constexpr (with_direct) direct.write(y, 0, width, fresh, canvas.direct.data());
     }
     return any != 0;
@@ -175,48 +187,72 @@ HWY_INLINE bool draw_narrow(const Brush& brush, const Brush& direct, const Canva
 template <bool with_direct>
 bool draw_wide(const Brush& brush, const Brush& direct, const Canvas& canvas) {
     const BitRect& rect = brush.rect;
-    const MaskRow span = bit_span(rect.x0, rect.x1);
-    bool any = false;
-    for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
-        MaskRow& open = canvas.open.rows[y];
-        const MaskRow fresh = open & span;
-        if (!fresh.any()) continue;
-        any = true;
-        open = open & ~span;
-        canvas.covered.rows[y] = canvas.covered.rows[y] | fresh;
-        for (std::uint32_t x = rect.x0; x < rect.x1; x += narrow) {
-            const std::uint32_t begin = x - rect.x0, width = std::min(narrow, rect.x1 - x);
-            const std::uint32_t bits = fresh.bits(static_cast<int>(x), static_cast<int>(width));
-            brush.write(y - rect.y0, begin, begin + width, bits, canvas.radiance.data());
-            if constexpr (with_direct)
-                direct.write(y - rect.y0, begin, begin + width, bits, canvas.direct.data());
+    std::uint64_t any = 0;
+    for (std::uint32_t x = rect.x0; x < rect.x1; x += widest) {
+        const std::uint32_t begin = x - rect.x0, width = std::min(widest, rect.x1 - x);
+        const OpenColumns columns(x, width);
+        for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(rect.height()); ++y) {
+            const std::uint64_t fresh = columns.take(canvas.open.rows[rect.y0 + y]);
+            if (fresh == 0) continue;
+            any |= fresh;
+            brush.write(y, begin, begin + width, fresh, canvas.radiance.data());
+            if constexpr (with_direct) direct.write(y, begin, begin + width, fresh, canvas.direct.data());
         }
     }
-    return any;
+    return any != 0;
+}
+
+/// One surfel; whether any of its bits were open.
+template <bool with_direct>
+HWY_INLINE bool draw(const BitRect& mask, const TexelRect& texels, const RecordTexture& texture,
+                     const Canvas& canvas) {
+    const Brush brush(mask, texels, texture.radiance, texture.side);
+    const Brush direct = with_direct ? Brush(mask, texels, texture.direct, texture.side) : brush;
+    const auto width = static_cast<std::uint32_t>(mask.width());
+    if (width <= dot_width && texels.width == 1 && texels.height == 1)
+        return draw_dot<with_direct>(brush, direct, canvas);
+    return width <= hn::Lanes(U()) ? draw_narrow<with_direct>(brush, direct, canvas)
+                                   : draw_wide<with_direct>(brush, direct, canvas);
 }
 
 template <bool with_direct>
-bool draw_each(std::span<const BitRect> masks, std::span<const TexelRect> texels,
-               const RecordTexture& texture, const Canvas& canvas) {
+bool draw_each(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
+               const Canvas& canvas) {
     bool any = false;
+    RowBits black = RowBits::load({});
     for (std::size_t i = 0; i < masks.size(); ++i) {
         if (masks[i].empty()) continue;
-        const Brush brush(masks[i], texels[i], texture.radiance, texture.side);
-        const Brush direct = with_direct ? Brush(masks[i], texels[i], texture.direct, texture.side) : brush;
-        if (masks[i].width() <= static_cast<int>(dot_width) && texels[i].width == 1 && texels[i].height == 1)
-            any |= draw_dot<with_direct>(brush, direct, canvas);
+        if (surfels.black[i] != 0)
+            draw_black(masks[i], canvas.open, black);
         else
-            any |= masks[i].width() <= static_cast<int>(narrow)
-                       ? draw_narrow<with_direct>(brush, direct, canvas)
-                       : draw_wide<with_direct>(brush, direct, canvas);
+            any |= draw<with_direct>(masks[i], surfels.texels[i], texture, canvas);
     }
-    return any;
+    return any || black.any();
 }
 
-bool draw_all(std::span<const BitRect> masks, std::span<const TexelRect> texels, const RecordTexture& texture,
+bool draw_all(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
               const Canvas& canvas) {
-    return canvas.direct.empty() ? draw_each<false>(masks, texels, texture, canvas)
-                                 : draw_each<true>(masks, texels, texture, canvas);
+    return canvas.direct.empty() ? draw_each<false>(masks, surfels, texture, canvas)
+                                 : draw_each<true>(masks, surfels, texture, canvas);
+}
+
+/// Trails are many and long: only their union touches the other masks.
+void close_all(std::span<const BitRect> trails, std::span<const BitRect> masks, Mask& open, Mask& unknown) {
+    Mask closed;
+    std::uint32_t first = mask_side, last = 0;
+    for (std::size_t i = 0; i < trails.size(); ++i) {
+        const BitRect trail = trails[i];
+        if (trail.empty() || trail == masks[i]) continue;
+        first = std::min<std::uint32_t>(first, trail.y0);
+        last = std::max<std::uint32_t>(last, trail.y1);
+        const RowBits span = RowBits::load(bit_span(trail.x0, trail.x1));
+        for (std::size_t y = trail.y0; y < trail.y1; ++y)
+            (RowBits::load(closed.rows[y]) | span).store(closed.rows[y]);
+    }
+    for (std::size_t y = first; y < last; ++y) {
+        unknown.rows[y] = unknown.rows[y] | (open.rows[y] & closed.rows[y]);
+        open.rows[y] = open.rows[y] & ~closed.rows[y];
+    }
 }
 
 }  // namespace
@@ -227,10 +263,16 @@ HWY_AFTER_NAMESPACE();
 namespace relumine {
 
 HWY_EXPORT(draw_all);
+HWY_EXPORT(close_all);
 
-bool draw_surfels(std::span<const BitRect> masks, std::span<const TexelRect> texels,
-                  const RecordTexture& texture, const Canvas& canvas) {
-    return HWY_DYNAMIC_DISPATCH(draw_all)(masks, texels, texture, canvas);
+bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
+                  const Canvas& canvas) {
+    return HWY_DYNAMIC_DISPATCH(draw_all)(masks, surfels, texture, canvas);
+}
+
+void close_trails(std::span<const BitRect> trails, std::span<const BitRect> masks, Mask& open,
+                  Mask& unknown) {
+    HWY_DYNAMIC_DISPATCH(close_all)(trails, masks, open, unknown);
 }
 
 }  // namespace relumine

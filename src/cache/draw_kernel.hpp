@@ -34,8 +34,7 @@ class TexelSteps {
 /// What surfels are drawn into.
 struct Canvas {
     Mask& open;                         // bits that may be drawn; those drawn are taken away
-    Mask& covered;                      // bits that have been drawn are added
-    std::span<std::uint32_t> radiance;  // mask_side², row-major in (y, x)
+    std::span<std::uint32_t> radiance;  // mask_side², row-major in (y, x), 0 where nothing has been drawn
     std::span<std::uint32_t> direct;    // the same, or empty
 };
 
@@ -46,9 +45,19 @@ struct RecordTexture {
     std::size_t side;
 };
 
+/// Which surfels.
+struct DrawnSurfels {
+    std::span<const TexelRect> texels;
+    std::span<const std::uint8_t> black;  // whether all texels are
+};
+
 /// Draws surfels one after the other where bits are open; whether any bit was. `masks[i]` belongs to
-/// `texels[i]`; the canvas's arrays must have room for surfel_padding more elements past what is drawn.
-bool draw_surfels(std::span<const BitRect> masks, std::span<const TexelRect> texels,
-                  const RecordTexture& texture, const Canvas& canvas);
+/// surfel i; the canvas's arrays must have room for surfel_padding more elements past what is drawn.
+bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
+                  const Canvas& canvas);
+
+/// Takes what lies in the surfels' trails from the open bits and adds it to the unknown ones. A trail that is
+/// no larger than its mask, which has been drawn, is passed over.
+void close_trails(std::span<const BitRect> trails, std::span<const BitRect> masks, Mask& open, Mask& unknown);
 
 }  // namespace relumine

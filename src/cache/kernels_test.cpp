@@ -158,12 +158,13 @@ TEST(ProjectKernel, AgreesWithTheMap) {
 }
 
 struct Drawing {
-    Mask open, covered;
+    Mask open;
     std::vector<std::uint32_t> radiance = std::vector<std::uint32_t>(mask_bits + surfel_padding);
     std::vector<std::uint32_t> direct = std::vector<std::uint32_t>(mask_bits + surfel_padding);
 };
 
-void draw_one(const BitRect& rect, const TexelRect& texels, const RecordTexture& texture, Drawing& out) {
+void draw_one(const BitRect& rect, const TexelRect& texels, bool black, const RecordTexture& texture,
+              Drawing& out) {
     const TexelSteps columns(texels.width, static_cast<std::uint32_t>(rect.width())),
         rows(texels.height, static_cast<std::uint32_t>(rect.height()));
     for (int y = rect.y0; y < rect.y1; ++y)
@@ -172,13 +173,12 @@ void draw_one(const BitRect& rect, const TexelRect& texels, const RecordTexture&
             const std::uint32_t v = texels.v + rows(static_cast<std::uint32_t>(y - rect.y0)),
                                 u = texels.u + columns(static_cast<std::uint32_t>(x - rect.x0));
             const auto at = static_cast<std::size_t>(y * mask_side + x);
-            out.radiance[at] = texture.radiance[v * texture.side + u];
-            out.direct[at] = texture.direct[v * texture.side + u];
+            out.radiance[at] = black ? 0 : texture.radiance[v * texture.side + u];
+            out.direct[at] = black ? 0 : texture.direct[v * texture.side + u];
             Mask bit;
             bit.fill({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(x + 1),
                       static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(y + 1)});
             out.open = out.open & ~bit;
-            out.covered = out.covered | bit;
         }
 }
 
@@ -192,6 +192,7 @@ TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
     const RecordTexture record{texture, direct, side};
     std::vector<BitRect> masks;
     std::vector<TexelRect> texels;
+    std::vector<std::uint8_t> black;
     for (std::uint64_t i = 0; i < 120; ++i) {
         const auto byte = [&](std::uint64_t what, float low, float high) {
             return static_cast<std::uint8_t>(uniform(i, what, low, high));
@@ -203,25 +204,56 @@ TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
         const bool dot = i % 3 == 0;
         texels.push_back({byte(5, 0, 56), byte(6, 0, 56), dot ? std::uint8_t{1} : byte(7, 1, 9),
                           dot ? std::uint8_t{1} : byte(8, 1, 9)});
+        black.push_back(i % 5 == 0 ? 1 : 0);
     }
     Drawing expected;
     expected.open.fill({3, 120, 5, 128});
-    for (std::size_t i = 0; i < masks.size(); ++i) draw_one(masks[i], texels[i], record, expected);
-    ASSERT_GT(expected.covered.count(), mask_bits / 3);
+    const int open_before = expected.open.count();
+    for (std::size_t i = 0; i < masks.size(); ++i)
+        draw_one(masks[i], texels[i], black[i] != 0, record, expected);
+    ASSERT_GT(open_before - expected.open.count(), mask_bits / 3);
     on_every_target([&] {
         for (const bool with_direct : {false, true}) {
             Drawing out;
             out.open.fill({3, 120, 5, 128});
-            EXPECT_TRUE(draw_surfels(masks, texels, record,
-                                     {out.open, out.covered, out.radiance,
-                                      with_direct ? std::span(out.direct) : std::span<std::uint32_t>()}));
+            const Canvas canvas{out.open, out.radiance,
+                                with_direct ? std::span(out.direct) : std::span<std::uint32_t>()};
+            EXPECT_TRUE(draw_surfels(masks, {texels, black}, record, canvas));
             EXPECT_EQ(out.open, expected.open);
-            EXPECT_EQ(out.covered, expected.covered);
             EXPECT_EQ(out.radiance, expected.radiance);
             EXPECT_TRUE(!with_direct || out.direct == expected.direct);
-            EXPECT_FALSE(draw_surfels(std::span(masks).first(0), texels, record,
-                                      {out.open, out.covered, out.radiance, {}}));
+            EXPECT_FALSE(draw_surfels(std::span(masks).first(0), {texels, black}, record, canvas));
+            EXPECT_FALSE(draw_surfels(masks, {texels, black}, record, canvas));  // nothing is open there now
         }
+    });
+}
+
+TEST(DrawKernel, ClosesTrailsOnEveryTarget) {
+    std::vector<BitRect> trails, masks;
+    Mask open = ~Mask{}, unknown, expected_unknown;
+    open.rows[40] = open.rows[41] = {};
+    unknown.fill({0, 9, 0, 9});
+    Mask expected_open = open;
+    expected_unknown = unknown;
+    for (std::uint64_t i = 0; i < 30; ++i) {
+        const auto byte = [&](std::uint64_t what, float low, float high) {
+            return static_cast<std::uint8_t>(uniform(i, what, low, high));
+        };
+        const std::uint8_t x0 = byte(1, 0, 110), y0 = byte(2, 0, 110);
+        trails.push_back({x0, byte(3, x0, 129), y0, byte(4, y0, 129)});
+        masks.push_back(i % 3 == 0 ? trails.back() : BitRect{});
+        if (i % 3 == 0) continue;
+        Mask trail;
+        trail.fill(trails.back());
+        expected_unknown = expected_unknown | (trail & expected_open);
+        expected_open = expected_open & ~trail;
+    }
+    ASSERT_GT(expected_unknown.count(), 1000);
+    on_every_target([&] {
+        Mask now_open = open, now_unknown = unknown;
+        close_trails(trails, masks, now_open, now_unknown);
+        EXPECT_EQ(now_open, expected_open);
+        EXPECT_EQ(now_unknown, expected_unknown);
     });
 }
 

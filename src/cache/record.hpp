@@ -31,7 +31,8 @@ struct Surfels {
     std::size_t stride = 0;  // of the planes of `corners`, half floats
     std::vector<std::uint16_t>
         corners;  // corner_planes × stride (+ padding): world-space offsets from the record
-    std::vector<TexelRect> texels;  // count (+ padding): which part of the texture the surfel carries
+    std::vector<TexelRect> texels;    // count (+ padding): which part of the texture the surfel carries
+    std::vector<std::uint8_t> black;  // count: whether all its texels are
     std::vector<std::uint32_t>
         layer_begin;  // layers + 1 entries; layer k is [layer_begin[k], layer_begin[k + 1])
 
@@ -54,7 +55,8 @@ struct Record {
     /// Memory that the record occupies.
     [[nodiscard]] std::size_t bytes() const {
         return sizeof(Record) + 4 * (radiance.capacity() + direct.capacity()) + 2 * surfels.corners.capacity()
-               + sizeof(TexelRect) * surfels.texels.capacity() + 4 * surfels.layer_begin.capacity();
+               + sizeof(TexelRect) * surfels.texels.capacity() + surfels.black.capacity()
+               + 4 * surfels.layer_begin.capacity();
     }
 };
 

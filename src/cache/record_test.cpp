@@ -93,6 +93,13 @@ TEST(Record, TextureIsWhatRaysBringBack) {
     EXPECT_GT(record.bytes(), 16384u);
 }
 
+TEST(SurfelMerge, KnowsWhichSurfelsAreBlack) {
+    const Record record = Stage({{{-50, 3, -50}, {50, 0, 0}, {0, 0, 100}, {}}}, sky).record({}, {0, 1, 0});
+    const Surfels& s = record.surfels;
+    ASSERT_GT(s.infinity_begin(), 50u);
+    for (std::size_t i = 0; i < s.count; ++i) EXPECT_EQ(s.black[i] != 0, i < s.infinity_begin()) << i;
+}
+
 TEST(Record, HarmonicDistanceOfAPlaneOverhead) {
     // 1/t = cos θ / h on an infinite plane at height h, whose mean over the hemisphere is 1/(2h).
     const Record record =

@@ -20,10 +20,10 @@ class RecordReprojector {
         for (std::size_t layer = 0; layer < s.layers(); ++layer) {
             const bool at_infinity = layer + 1 == s.layers();
             cover(s.layer_begin[layer], s.layer_begin[layer + 1]);
-            if (!at_infinity) close_trails(s.layer_begin[layer], s.layer_begin[layer + 1]);
+            if (!at_infinity) close_behind(s.layer_begin[layer], s.layer_begin[layer + 1]);
         }
         for (std::size_t y = 0; y < mask_side; ++y)
-            out_.unknown.rows[y] = out_.unknown.rows[y] & ~out_.covered.rows[y];
+            out_.covered.rows[y] = ~(open_.rows[y] | out_.unknown.rows[y]);
     }
 
   private:
@@ -33,22 +33,16 @@ class RecordReprojector {
                                     record_.direct.empty() ? record_.radiance : record_.direct,
                                     static_cast<std::size_t>(record_.side)};
         const bool any = draw_surfels(std::span(out_.masks).subspan(begin, count),
-                                      std::span(record_.surfels.texels).subspan(begin, count), texture,
-                                      {open_, out_.covered, out_.radiance, out_.direct});
+                                      {std::span(record_.surfels.texels).subspan(begin, count),
+                                       std::span(record_.surfels.black).subspan(begin, count)},
+                                      texture, {open_, out_.radiance, out_.direct});
         out_.layers += any ? 1 : 0;
     }
 
     /// What the move has opened behind this layer: farther layers must not fill it.
-    void close_trails(std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const BitRect &trail = out_.trails[i], &mask = out_.masks[i];
-            if (trail.empty() || trail == mask) continue;
-            const MaskRow span = bit_span(trail.x0, trail.x1);
-            for (std::size_t y = trail.y0; y < trail.y1; ++y) {
-                out_.unknown.rows[y] = out_.unknown.rows[y] | span;
-                open_.rows[y] = open_.rows[y] & ~span;
-            }
-        }
+    void close_behind(std::size_t begin, std::size_t end) {
+        close_trails(std::span(out_.trails).subspan(begin, end - begin),
+                     std::span(out_.masks).subspan(begin, end - begin), open_, out_.unknown);
     }
 
     const Record& record_;

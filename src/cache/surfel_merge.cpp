@@ -4,6 +4,7 @@
 
 #include <half.h>
 
+#include "base/rgbe.hpp"
 #include "cache/hemisphere_map.hpp"
 
 namespace relumine {
@@ -79,8 +80,20 @@ class Merger {
         out.count = out.stride = out.texels.size();
         out.texels.resize(out.count + surfel_padding);
         out.corners.resize(corner_planes * out.stride + surfel_padding);
-        for (std::size_t i = 0; i < out.count; ++i) put_corners(out, i);
+        out.black.resize(out.count);
+        for (std::size_t i = 0; i < out.count; ++i) {
+            put_corners(out, i);
+            out.black[i] = is_black(out.texels[i]) ? 1 : 0;
+        }
         return out;
+    }
+
+    /// As the texture keeps it.
+    [[nodiscard]] bool is_black(const TexelRect& r) const {
+        for (int v = r.v; v < r.v + r.height; ++v)
+            for (int u = r.u; u < r.u + r.width; ++u)
+                if (pack_rgbe(texels_[at(u, v)].radiance) != 0) return false;
+        return true;
     }
 
     void put_corners(Surfels& out, std::size_t i) const {
