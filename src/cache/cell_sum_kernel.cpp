@@ -53,15 +53,26 @@ HWY_INLINE VF sum_pairs(VF low, VF high) {
 #endif
 }
 
-/// The sums over the next Lanes cells.
-HWY_INLINE Spectrums cells(const std::uint32_t* row) {
-    const U u;
-    const std::size_t lanes = hn::Lanes(u);
-    const std::uint32_t* below = row + mask_side;
-    const Spectrums low = add(unpack(hn::LoadU(u, row)), unpack(hn::LoadU(u, below)));
-    const Spectrums high = add(unpack(hn::LoadU(u, row + lanes)), unpack(hn::LoadU(u, below + lanes)));
-    return {sum_pairs(low.r, high.r), sum_pairs(low.g, high.g), sum_pairs(low.b, high.b)};
-}
+/// The next Lanes cells.
+struct Cells {
+    VU above_low, above_high, below_low, below_high;
+
+    explicit HWY_INLINE Cells(const std::uint32_t* row)
+        : above_low(hn::LoadU(U(), row)),
+          above_high(hn::LoadU(U(), row + hn::Lanes(U()))),
+          below_low(hn::LoadU(U(), row + mask_side)),
+          below_high(hn::LoadU(U(), row + mask_side + hn::Lanes(U()))) {}
+
+    [[nodiscard]] HWY_INLINE bool black() const {
+        const VU all = hn::Or(hn::Or(above_low, above_high), hn::Or(below_low, below_high));
+        return hn::AllTrue(U(), hn::Eq(all, hn::Zero(U())));
+    }
+    [[nodiscard]] HWY_INLINE Spectrums sums() const {
+        const Spectrums low = add(unpack(above_low), unpack(below_low)),
+                        high = add(unpack(above_high), unpack(below_high));
+        return {sum_pairs(low.r, high.r), sum_pairs(low.g, high.g), sum_pairs(low.b, high.b)};
+    }
+};
 
 void sum_all(std::span<const std::uint32_t> radiance, const CellWeights& weights, std::span<float> products,
              Spectrum& out) {
@@ -72,7 +83,12 @@ void sum_all(std::span<const std::uint32_t> radiance, const CellWeights& weights
     for (std::size_t y = 0; y < side; ++y)
         for (std::size_t x = 0; x < side; x += lanes) {
             const std::size_t cell = y * side + x;
-            const Spectrums radiant = cells(&radiance[y * 2 * mask_side + 2 * x]);
+            const Cells cells(&radiance[y * 2 * mask_side + 2 * x]);
+            if (cells.black()) {  // much of it where gather rays bring back emission alone
+                if (!products.empty()) hn::StoreU(hn::Zero(f), f, &products[cell]);
+                continue;
+            }
+            const Spectrums radiant = cells.sums();
             const Spectrums term{hn::Mul(radiant.r, hn::LoadU(f, &weights.r[cell])),
                                  hn::Mul(radiant.g, hn::LoadU(f, &weights.g[cell])),
                                  hn::Mul(radiant.b, hn::LoadU(f, &weights.b[cell]))};
