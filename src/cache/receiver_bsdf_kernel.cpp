@@ -50,17 +50,17 @@ struct Prepared {
 };
 
 /// D·G / (4 cos θ_out) at the half vector with these squared components, not yet divided by the squared
-/// length.
+/// length. One division for those of the density, of Λ and of the masking.
 HWY_INLINE VF lobe(const Prepared& p, const Vec3s& w, VF m_xy2, VF m_z2, VF length2) {
     const VF density_root = hn::MulAdd(constant(p.a2), m_z2, m_xy2);
-    const VF density = hn::Div(hn::Mul(constant(p.scale), squared(length2)), squared(density_root));
     const VF z2 = squared(w.z), xy2 = hn::MulAdd(w.x, w.x, squared(w.y));
     const VF root = hn::Sqrt(hn::MulAdd(constant(p.a2), xy2, z2));
-    const VF lambda_in = hn::MulSub(constant(0.5f), hn::Div(root, w.z), constant(0.5f));
+    // (½ + Λ_in)·cos θ_in = root / 2
     const VF masking = p.b.ggx.masking == Masking::correlated
-                           ? hn::Add(constant(1 + p.lambda_out), lambda_in)
-                           : hn::Mul(constant(1 + p.lambda_out), hn::Add(constant(1), lambda_in));
-    return hn::Div(density, masking);
+                           ? hn::MulAdd(constant(0.5f + p.lambda_out), w.z, hn::Mul(constant(0.5f), root))
+                           : hn::Mul(constant(0.5f * (1 + p.lambda_out)), hn::Add(w.z, root));
+    return hn::Div(hn::Mul(hn::Mul(constant(p.scale), w.z), squared(length2)),
+                   hn::Mul(squared(density_root), masking));
 }
 
 HWY_INLINE Spectrums reflect(const Prepared& p, const Vec3s& w) {
