@@ -34,6 +34,21 @@ std::vector<float> interpolated_means(const Environment& e) {
     return means;
 }
 
+/// The greatest value of the bilinear interpolant within each texel, or more: of the 3 × 3 texels around.
+std::vector<float> interpolated_maxima(const Environment& e) {
+    const auto width = static_cast<std::size_t>(e.width), height = static_cast<std::size_t>(e.height);
+    std::vector<float> maxima(width * height);
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t x = 0; x < width; ++x) {
+            float most = 0;
+            for (std::size_t j = y == 0 ? 0 : y - 1; j <= std::min(y + 1, height - 1); ++j)
+                for (const std::size_t i : {(x + width - 1) % width, x, (x + 1) % width})
+                    most = std::max(most, mean_of_channels(e.radiance[j * width + i]));
+            maxima[y * width + x] = most;
+        }
+    return maxima;
+}
+
 /// The element of a cumulative distribution (from 0 to 1) that `u` falls into, and where in it.
 struct Drawn {
     std::size_t element;
@@ -72,10 +87,11 @@ float EnvironmentLight::mean_radiance(const Environment& e) {
     return static_cast<float>(sum / (2.0 * e.width));
 }
 
-EnvironmentLight::EnvironmentLight(const Environment& environment, float floor)
+EnvironmentLight::EnvironmentLight(const Environment& environment, float floor, float threshold)
     : environment_(environment), width_(environment.width), height_(environment.height) {
     const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
     const std::vector<float> means = interpolated_means(environment);
+    const std::vector<float> maxima = interpolated_maxima(environment);
     row_cdf_.resize(height + 1);
     texel_cdf_.resize(height * (width + 1));
     density_.resize(width * height);
@@ -90,7 +106,9 @@ EnvironmentLight::EnvironmentLight(const Environment& environment, float floor)
                * (border_cosine(j, height_) - border_cosine(j + 1, height_));
     };
     for (std::size_t y = 0; y < height; ++y) {
-        for (std::size_t x = 0; x < width; ++x) texels[x] = std::max(0.0f, means[y * width + x] - floor);
+        for (std::size_t x = 0; x < width; ++x)
+            texels[x] =
+                maxima[y * width + x] > threshold ? std::max(0.0f, means[y * width + x] - floor) : 0.0f;
         rows[y] = std::accumulate(texels.begin(), texels.end(), 0.0) * solid_angle(y);
         accumulate(texels, {&texel_cdf_[y * (width + 1)], width + 1});
     }

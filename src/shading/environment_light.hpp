@@ -16,10 +16,11 @@ struct EnvironmentSample {
 
 /// The environment with a sampling density over its texels' areas: proportional to what the texel shines over
 /// `floor` (its interpolated mean). With a floor of 0 this is plain importance sampling; with the mean it is
-/// MIS compensation [Karlik19], right only beside BSDF sampling.
+/// MIS compensation [Karlik19], right only beside BSDF sampling. Only texels are drawn within which the
+/// interpolated radiance may exceed `threshold`: wherever it does, the density is not 0 and in proportion.
 class EnvironmentLight {
   public:
-    EnvironmentLight(const Environment& environment, float floor);
+    EnvironmentLight(const Environment& environment, float floor, float threshold = 0);
 
     /// Mean over the sphere of the channels' mean, W·sr⁻¹·m⁻².
     [[nodiscard]] static float mean_radiance(const Environment& environment);

@@ -84,9 +84,8 @@ LightSampler::LightSampler(const SceneData& scene, const LightSelection& selecti
     double environment_power = 0;
     if (scene.environment) {
         const float mean = EnvironmentLight::mean_radiance(*scene.environment);
-        const float floor =
-            std::max(selection.threshold, selection.compensate_for_mis ? mean * flat_margin : 0.0f);
-        environment_.emplace(*scene.environment, floor);
+        environment_.emplace(*scene.environment, selection.compensate_for_mis ? mean * flat_margin : 0.0f,
+                             selection.threshold);
         if (environment_->can_sample()) environment_power = 4 * pi * pi * sqr(scene.bounds.radius()) * mean;
     }
     if (environment_power > 0)

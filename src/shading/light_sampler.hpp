@@ -43,8 +43,9 @@ struct TrianglePointLanes {
 
 /// Which part of the light is sampled, and how.
 struct LightSelection {
-    float threshold = 0;       // radiance (channels' mean) that environment texels and emitters must exceed
-    bool delta_lights = true;  // point, spot and directional lights are among the choices
+    float threshold = 0;  // radiance (channels' mean) that light must exceed: the environment anywhere in a
+                          // texel, emitters on average
+    bool delta_lights = true;        // point, spot and directional lights are among the choices
     bool compensate_for_mis = true;  // lower the environment's density by its mean [Karlik19]
 };
 
