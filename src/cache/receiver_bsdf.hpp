@@ -2,8 +2,10 @@
 // The BSDF of a receiver, times the cosine, over its square.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "cache/mask.hpp"
 #include "radiance/transport.hpp"
@@ -36,5 +38,25 @@ struct SpectrumArrays {
 /// f·|cos θ|, 1/sr, for every direction; 0 below the shading hemisphere. Relative error against
 /// eval(const Bsdf&, …): 2e-4, from the half vectors of sharp lobes.
 void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out);
+
+/// Directions in runs of 16 lanes: run i is [16 i, 16 i + 16), one direction for each of 16 texels.
+struct DirectionRuns {
+    std::vector<float> x, y, z;
+};
+
+/// Radiance at the same points.
+struct RadianceRuns {
+    std::vector<float> r, g, b;
+};
+
+/// The means of f·|cos θ| over the points of some tiles' texels, 0 for points below the horizon of `normal`.
+/// A tile has `per_texel` runs from run `tile · per_texel` on and receives 16 values.
+void evaluate_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points, std::size_t per_texel,
+                    std::span<const std::uint32_t> tiles, const SpectrumArrays& out);
+
+/// The same of f·|cos θ| times `radiance`.
+void evaluate_products(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
+                       const RadianceRuns& radiance, std::size_t per_texel,
+                       std::span<const std::uint32_t> tiles, const SpectrumArrays& out);
 
 }  // namespace relumine

@@ -13,7 +13,7 @@ namespace relumine::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
+using F = hn::CappedTag<float, 16>;
 using VF = hn::Vec<F>;
 
 HWY_INLINE VF constant(float x) { return hn::Set(F(), x); }
@@ -120,6 +120,32 @@ void evaluate_all(const ReceiverBsdf& bsdf, const Directions& w_in, const Spectr
     }
 }
 
+/// `radiance`: null for 1 everywhere.
+void evaluate_all_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
+                        const RadianceRuns* radiance, std::size_t per_texel,
+                        std::span<const std::uint32_t> tiles, const SpectrumArrays& out) {
+    const F f;
+    const Prepared prepared(bsdf);
+    const VF share = constant(1 / static_cast<float>(per_texel));
+    for (std::size_t k = 0; k < tiles.size(); ++k)
+        for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(f)) {
+            VF r = hn::Zero(f), g = hn::Zero(f), b = hn::Zero(f);
+            for (std::size_t run = tiles[k] * per_texel; run < (tiles[k] + 1) * per_texel; ++run) {
+                const std::size_t at = 16 * run + lane;
+                const Vec3s w{hn::LoadU(f, &points.x[at]), hn::LoadU(f, &points.y[at]),
+                              hn::LoadU(f, &points.z[at])};
+                const VF factor = hn::IfThenElseZero(hn::Gt(dot(w, normal), hn::Zero(f)), share);
+                const Spectrums s = above_horizon(prepared, w);
+                r = hn::MulAdd(s.r, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->r[at])) : factor, r);
+                g = hn::MulAdd(s.g, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->g[at])) : factor, g);
+                b = hn::MulAdd(s.b, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->b[at])) : factor, b);
+            }
+            hn::StoreU(r, f, &out.r[16 * k + lane]);
+            hn::StoreU(g, f, &out.g[16 * k + lane]);
+            hn::StoreU(b, f, &out.b[16 * k + lane]);
+        }
+}
+
 }  // namespace
 }  // namespace relumine::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -128,9 +154,21 @@ HWY_AFTER_NAMESPACE();
 namespace relumine {
 
 HWY_EXPORT(evaluate_all);
+HWY_EXPORT(evaluate_all_tiles);
 
 void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
     HWY_DYNAMIC_DISPATCH(evaluate_all)(bsdf, w_in, out);
+}
+
+void evaluate_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points, std::size_t per_texel,
+                    std::span<const std::uint32_t> tiles, const SpectrumArrays& out) {
+    HWY_DYNAMIC_DISPATCH(evaluate_all_tiles)(bsdf, normal, points, nullptr, per_texel, tiles, out);
+}
+
+void evaluate_products(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
+                       const RadianceRuns& radiance, std::size_t per_texel,
+                       std::span<const std::uint32_t> tiles, const SpectrumArrays& out) {
+    HWY_DYNAMIC_DISPATCH(evaluate_all_tiles)(bsdf, normal, points, &radiance, per_texel, tiles, out);
 }
 
 }  // namespace relumine
