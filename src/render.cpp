@@ -153,10 +153,10 @@ struct Pass {
 };
 
 /// Passes of 1, 1, 2, 4, … samples, so that there is soon something to see and to save.
-std::vector<Pass> passes_of(std::uint32_t samples, std::uint32_t longest_pass) {
+std::vector<Pass> passes_of(std::uint32_t samples, std::uint32_t shortest_pass, std::uint32_t longest_pass) {
     std::vector<Pass> passes;
     for (std::uint32_t done = 0; done < samples;) {
-        const std::uint32_t count = std::min({std::max(1u, done), longest_pass, samples - done});
+        const std::uint32_t count = std::min({std::max(shortest_pass, done), longest_pass, samples - done});
         passes.push_back({done, count});
         done += count;
     }
@@ -185,8 +185,9 @@ void render_passes(Integrator& integrator, const PixelRect& window, std::uint32_
                    Film& film, Monitor& monitor) {
     const std::vector<PixelRect> tiles = tiles_of(window, integrator.tile_side());
     monitor.begin_stage("render", work_of(window, {0, samples}));
-    for (const Pass& pass : passes_of(samples, integrator.longest_pass())) {
-        Preparation preparation{pass.first_sample, threads, [&] { return monitor.stop(); }, {}, {}};
+    for (const Pass& pass : passes_of(samples, integrator.shortest_pass(), integrator.longest_pass())) {
+        Preparation preparation{
+            pass.first_sample, pass.sample_count, threads, [&] { return monitor.stop(); }, {}, {}};
         monitor.prepare(preparation, [&] { integrator.prepare(preparation); });
         const bool whole = render_pass(integrator, tiles, pass, threads, film, monitor);
         if (whole || !film.has_passes())

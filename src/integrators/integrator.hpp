@@ -11,7 +11,7 @@ namespace relumine {
 
 /// What is done before the tiles of a pass.
 struct Preparation {
-    std::uint32_t first_sample = 0;
+    std::uint32_t first_sample = 0, sample_count = 1;
     int threads = 1;
     std::function<bool()> stop;  // asked often; true: come to an end soon
     RayCounts rays;              // of the preparation
@@ -25,7 +25,8 @@ class Integrator {
 
     /// Pixels along each side of tiles; a multiple of 4.
     [[nodiscard]] virtual int tile_side() const { return 16; }
-    /// The most samples per pixel that one pass may have.
+    /// The fewest samples per pixel that are worth a pass, and the most that one may have.
+    [[nodiscard]] virtual std::uint32_t shortest_pass() const { return 1; }
     [[nodiscard]] virtual std::uint32_t longest_pass() const { return 64; }
 
     /// Called before the tiles of each pass are rendered, by one thread; may use p.threads itself.
