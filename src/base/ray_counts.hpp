@@ -8,9 +8,19 @@
 
 namespace relumine {
 
-enum class RayPurpose : std::uint8_t { camera, prefix, gather, bounce, shadow, record, gap, product };
-inline constexpr std::array<const char*, 8> ray_purpose_names{"camera", "prefix", "gather", "bounce",
-                                                              "shadow", "record", "gap",    "product"};
+enum class RayPurpose : std::uint8_t {
+    camera,
+    prefix,
+    gather,
+    bounce,
+    shadow,
+    record,
+    gap,
+    product,
+    residual
+};
+inline constexpr std::array<const char*, 9> ray_purpose_names{
+    "camera", "prefix", "gather", "bounce", "shadow", "record", "gap", "product", "residual"};
 
 struct RayCounts {
     std::array<std::uint64_t, ray_purpose_names.size()> by_purpose{};

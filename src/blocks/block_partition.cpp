@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grouping samples and splitting blocks.
+#include "blocks/block_partition.hpp"
+
+#include "blocks/parallax.hpp"
+
+namespace relumine {
+namespace {
+
+using Points = std::vector<const BlockPoint*>;
+
+/// Samples may lie so far off the anchor's plane, against the block's side.
+constexpr float plane_tolerance = 0.25f;
+
+/// Rays may start at so many samples of a group, and so many say which directions matter.
+constexpr std::size_t most_starts = 8, most_receivers = 4;
+
+/// A map is traced with one ray per texel where its group is worth that many rays in all.
+constexpr float least_rays = 96;
+
+float distance_from(float x, float y, const CachePoint& point) {
+    return sqr(static_cast<float>(point.x) + 0.5f - x) + sqr(static_cast<float>(point.y) + 0.5f - y);
+}
+
+const BlockPoint* nearest(const Points& points, float x, float y) {
+    return *std::ranges::min_element(points, {},
+                                     [&](const BlockPoint* p) { return distance_from(x, y, *p->point); });
+}
+
+/// Up to `most` of a group, its anchor first.
+Points some_of(const Points& group, std::size_t most) {
+    Points some;
+    const std::size_t step = (group.size() + most - 1) / most;
+    for (std::size_t i = 0; i < group.size(); i += step) some.push_back(group[i]);
+    return some;
+}
+
+class Partition {
+  public:
+    Partition(const MapSource& source, const BlockSettings& settings, std::vector<BlockMap>& maps,
+              RayCounts& rays)
+        : source_(source), settings_(settings), maps_(maps), rays_(rays) {
+        for (auto& plane : bsdf_) plane.resize(source.grid.tiles);
+    }
+
+    /// Adds the maps of the samples in the square block of `size` pixels with its corner at (x, y).
+    void divide(Points points, int x, int y, int size) {
+        while (!points.empty()) {
+            const Points group = take_group(points, x, y, size);
+            BlockMap map = traced(group, x, y, size);
+            if (size > settings_.smallest && group.size() > 1 && error_of(map, group) > settings_.tolerance)
+                divide_quarters(group, x, y, size / 2);
+            else
+                maps_.push_back(std::move(map));
+        }
+    }
+
+  private:
+    /// Takes the samples that are like the one nearest to the block's middle; that comes first.
+    Points take_group(Points& points, int x, int y, int size) const {
+        const float half = 0.5f * static_cast<float>(size);
+        const BlockPoint* const anchor =
+            nearest(points, static_cast<float>(x) + half, static_cast<float>(y) + half);
+        const float tolerance = plane_tolerance * static_cast<float>(size) * anchor->point->footprint;
+        const GatherPoint& a = anchor->point->gather;
+        const auto belongs = [&](const BlockPoint* p) {
+            const GatherPoint& g = p->point->gather;
+            return p == anchor
+                   || (g.depth == a.depth && dot(g.frame.n, a.frame.n) >= settings_.min_cos_normals
+                       && std::abs(dot(g.position - a.position, a.frame.n)) <= tolerance);
+        };
+        const auto rest = std::stable_partition(points.begin(), points.end(), belongs);
+        Points group(points.begin(), rest);
+        points.erase(points.begin(), rest);
+        std::swap(group.front(), *std::ranges::find(group, anchor));
+        return group;
+    }
+
+    BlockMap traced(const Points& group, int x, int y, int size) {
+        std::vector<GatherPoint> starts;
+        for (const BlockPoint* p : some_of(group, most_starts)) starts.push_back(p->point->gather);
+        weigh_tiles(group);
+        BlockMap map;
+        map.anchor = starts.front();
+        map.footprint = group.front()->point->footprint;
+        map.size = static_cast<float>(size);
+        map.center_x = static_cast<float>(x) + 0.5f * map.size;
+        map.center_y = static_cast<float>(y) + 0.5f * map.size;
+        trace_map(source_, starts, tile_rays(group, starts), hash(group.front()->point->key, size), map,
+                  distances_, rays_);
+        return map;
+    }
+
+    /// By tile, the mean f·|cos θ| of some receivers of the group.
+    void weigh_tiles(const Points& group) {
+        const DirectionGrid& grid = source_.grid;
+        weights_.assign(grid.tiles, 0);
+        for (const BlockPoint* p : some_of(group, most_receivers)) {
+            evaluate(p->bsdf, {grid.tile_x, grid.tile_y, grid.tile_z}, {bsdf_[0], bsdf_[1], bsdf_[2]});
+            for (std::size_t tile = 0; tile < grid.tiles; ++tile)
+                weights_[tile] += luminance({bsdf_[0][tile], bsdf_[1][tile], bsdf_[2][tile]});
+        }
+    }
+
+    /// The group's rays go where its receivers look.
+    TileRays tile_rays(const Points& group, std::span<const GatherPoint> starts) const {
+        const DirectionGrid& grid = source_.grid;
+        const float pixels =
+            static_cast<float>(group.size()) / static_cast<float>(settings_.samples_per_pixel);
+        const float rays = std::max(settings_.rays_per_pixel * pixels, least_rays);
+        float sum = 0;
+        for (const float weight : weights_) sum += weight;
+        TileRays tile_rays(grid.tiles);
+        for (std::size_t tile = 0; tile < grid.tiles; ++tile) {
+            const Vec3 center = grid.tile_center(tile).v;
+            const auto sees = [&](const GatherPoint& p) {
+                return dot(p.frame.n, center) > -grid.tile_sine[tile];
+            };
+            if (std::ranges::none_of(starts, sees)) continue;
+            const float wanted = sum > 0 ? rays * weights_[tile] / sum : 0;
+            tile_rays[tile] = wanted > 6 ? 16 : wanted > 1.5f ? 4 : 1;
+        }
+        return tile_rays;
+    }
+
+    [[nodiscard]] float error_of(const BlockMap& map, const Points& group) const {
+        float extent = 0;
+        for (const BlockPoint* p : group)
+            extent = std::max(extent, length_squared(p->point->gather.position - map.anchor.position));
+        return parallax_error(source_.grid, map, distances_, weights_, std::sqrt(extent), settings_.level);
+    }
+
+    void divide_quarters(const Points& group, int x, int y, int size) {
+        for (int quarter = 0; quarter < 4; ++quarter) {
+            const int x0 = x + quarter % 2 * size, y0 = y + quarter / 2 * size;
+            Points inside;
+            std::ranges::copy_if(group, std::back_inserter(inside), [&](const BlockPoint* p) {
+                return p->point->x >= x0 && p->point->x < x0 + size && p->point->y >= y0
+                       && p->point->y < y0 + size;
+            });
+            divide(std::move(inside), x0, y0, size);
+        }
+    }
+
+    const MapSource& source_;
+    const BlockSettings& settings_;
+    std::vector<BlockMap>& maps_;
+    RayCounts& rays_;
+    std::vector<float> weights_, distances_;  // of the group: by tile, by texel
+    std::array<std::vector<float>, 3> bsdf_;  // scratch
+};
+
+}  // namespace
+
+std::vector<BlockMap> make_maps(const MapSource& source, const PixelRect& cell,
+                                std::span<const BlockPoint> points, const BlockSettings& settings,
+                                RayCounts& rays) {
+    std::vector<BlockMap> maps;
+    Partition partition(source, settings, maps, rays);
+    const int size = settings.largest;
+    for (int y = cell.y0; y < cell.y1; y += size)
+        for (int x = cell.x0; x < cell.x1; x += size) {
+            Points inside;
+            for (const BlockPoint& p : points)
+                if (p.point->x >= x && p.point->x < x + size && p.point->y >= y && p.point->y < y + size)
+                    inside.push_back(&p);
+            partition.divide(std::move(inside), x, y, size);
+        }
+    return maps;
+}
+
+}  // namespace relumine

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which camera samples share a map.
+#pragma once
+
+#include "blocks/block_trace.hpp"
+#include "cache/placement.hpp"
+#include "cache/receiver_bsdf.hpp"
+
+namespace relumine {
+
+/// Pixels along each side of the cells that blocks are parts of; cells are anchored at pixel (0, 0).
+inline constexpr int cell_pixels = 16;
+
+/// A camera sample that may share a map.
+struct BlockPoint {
+    const CachePoint* point;
+    ReceiverBsdf bsdf;  // world space
+};
+
+struct BlockSettings {
+    int largest = 16, smallest = 1;  // pixels along a block's side; powers of two, largest ≤ cell_pixels
+    float tolerance = 0.05f;  // of the parallax error that makes a block split, relative to what is reflected
+    float rays_per_pixel = 24;     // that small groups are worth
+    float level = 0;               // radiance that errors are relative to where there is less
+    float min_cos_normals = 0.9f;  // between the anchor's geometric normal and the other samples'
+    int samples_per_pixel = 1;     // of those that share maps
+};
+
+/// The maps of a cell: its samples in groups of similar position and normal, in blocks as large as the
+/// parallax of what they see allows. A function of the cell's samples alone.
+[[nodiscard]] std::vector<BlockMap> make_maps(const MapSource& source, const PixelRect& cell,
+                                              std::span<const BlockPoint> points,
+                                              const BlockSettings& settings, RayCounts& rays);
+
+}  // namespace relumine

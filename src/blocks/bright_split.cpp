@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Splitting light.
+#include "blocks/bright_split.hpp"
+
+namespace relumine {
+
+BrightSplit::BrightSplit(const SceneData& scene, float factor)
+    : scene_(scene),
+      threshold_(bright_threshold(scene, factor)),
+      lights_(scene, {threshold_, false, false}) {}
+
+/// What rises over the threshold, so that the dim part stays continuous at the rim of a sun.
+float BrightSplit::excess(Spectrum radiance) const {
+    const float mean = (radiance.r + radiance.g + radiance.b) / 3;
+    return mean > threshold_ ? 1 - threshold_ / mean : 0;
+}
+
+BrightSplit::Part BrightSplit::of_environment(WorldDir direction, Spectrum radiance) const {
+    const float share = excess(radiance);
+    if (share <= 0) return {};
+    const float pdf = lights_.environment_pdf(direction);
+    return pdf > 0 ? Part{share, pdf} : Part{};
+}
+
+BrightSplit::Part BrightSplit::of_emission(const Ray& ray, const Hit& hit) const {
+    const float pdf = lights_.pdf(ray.origin, surface_point(scene_, hit, -ray.direction));
+    return pdf > 0 ? Part{1, pdf} : Part{};
+}
+
+}  // namespace relumine

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inner loops of MapIntegral, for as many tiles or texels at once as the machine has lanes.
+#pragma once
+
+#include "blocks/blend.hpp"
+#include "blocks/quadrature_points.hpp"
+
+namespace relumine {
+
+/// What decides a tile's tier.
+struct TierQuery {
+    Vec3 geometric_normal, shading_normal;
+    Vec3 w_out;          // world space
+    float alpha = 0;     // GGX; 0: no specular lobe
+    bool exact = false;  // never one point
+};
+
+/// f·|cos θ| of a receiver, by channel.
+struct BsdfPlanes {
+    std::array<float*, 3> channel;
+};
+
+/// Over the maps of a blend, by tile: luminance's weighted mean and its variance within and between them, and
+/// which texels all of them know.
+struct BlendedTiles {
+    std::span<float> luminance, variance;
+    std::span<std::uint16_t> known;
+};
+void blend_tiles(const Blend& blend, const BlendedTiles& out);
+
+void choose_tiers(const DirectionGrid& grid, const TierQuery& query, std::span<const std::uint16_t> known,
+                  std::span<TileTier> tiers);
+
+/// Sums over tiles or texels of f·|cos θ| times radiance, and of f·|cos θ| alone.
+struct ReflectedSums {
+    Spectrum direct, indirect, albedo;
+};
+
+/// Over the tiles of tier `one`. f is 0 afterwards in all others.
+[[nodiscard]] ReflectedSums sum_tiles(const Blend& blend, std::span<const TileTier> tiers,
+                                      const BsdfPlanes& bsdf);
+
+/// What else is wanted of a tile's texels.
+struct TexelSums {
+    float bsdf = 0;     // Σ of the luminance of f·|cos θ|
+    float unknown = 0;  // how many of them no map knows
+};
+
+/// Over the texels of the tiles in `tiles`; `bsdf` has tile_texels values for each. Where not all maps know a
+/// texel, those that do share its weight; where none does, it is black.
+[[nodiscard]] ReflectedSums sum_texels(const Blend& blend, std::span<const std::uint32_t> tiles,
+                                       const BsdfPlanes& bsdf, std::span<TexelSums> by_tile);
+
+/// Σ over the texels of `tiles` of how open to the environment they are, [0, 1], times `detail` (tile_texels
+/// values for each tile).
+[[nodiscard]] Spectrum sum_open(const Blend& blend, std::span<const std::uint32_t> tiles,
+                                const BsdfPlanes& detail);
+
+}  // namespace relumine
