@@ -78,12 +78,14 @@ void validate(const RenderSettings& s) {
     check_name("pixel filter", s.pixel_filter, {"box", "blackman-harris"});
     check_name("sampler", s.sampler, {"auto", "sobol", "stratified", "independent"});
     check_range("gather rays", s.gather_rays, 1, million);
-    check_range("light samples", s.light_samples, 0, million);
+    check_range("light samples", s.light_samples, -1, million);
+    check_range("residual rays", s.residual_rays, -1, million);
+    check_real("error", s.error, 0.0005f, 0.5f);
     if (s.method != "path") {  // their numbers are 32-bit indices into one sequence per pixel
         check_range("gather rays × samples per pixel", std::int64_t{s.gather_rays} * s.samples_per_pixel, 1,
                     max_rays_per_pixel);
         check_range("light samples × samples per pixel", std::int64_t{s.light_samples} * s.samples_per_pixel,
-                    0, max_rays_per_pixel);
+                    -million, max_rays_per_pixel);
     }
     check_cache(s);
     check_range("max depth", s.max_depth, -1, million);

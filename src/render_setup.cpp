@@ -54,7 +54,8 @@ PixelRect crop_window(const RenderSettings& settings, FrameSize frame) {
 PointSet point_set(const RenderSettings& s) {
     if (s.sampler == "stratified") return PointSet::stratified;
     if (s.sampler == "independent") return PointSet::independent;
-    return s.sampler == "auto" && s.method != "path" ? PointSet::stratified : PointSet::sobol;
+    const bool records = s.method == "gather" || s.method == "reproject" || s.method == "reproject-mc";
+    return s.sampler == "auto" && records ? PointSet::stratified : PointSet::sobol;
 }
 
 PixelFilterKind pixel_filter(const RenderSettings& s) {

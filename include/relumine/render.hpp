@@ -21,13 +21,14 @@ struct RenderSettings {
     int samples_per_pixel = 16;             // 1 … 2²⁰ camera samples
     std::string pixel_sampling = "jitter";  // "jitter" or "center"
     std::string pixel_filter = "box";       // "box" (one pixel wide) or "blackman-harris" (3 pixels wide)
-    std::string sampler =
-        "auto";              // "sobol", "stratified", "independent"; auto: sobol for path, else stratified
-    int gather_rays = 4096;  // `gather`, `reproject-mc`: rays per shading point, 1 … 2²⁰
+    std::string sampler = "auto";  // "sobol", "stratified", "independent"; auto: sobol for path, cache and
+                                   // block-gather, else stratified
+    int gather_rays = 4096;        // `gather`, `reproject-mc`: rays per shading point, 1 … 2²⁰
     bool gather_packets =
-        true;               // `gather`: trace rays sixteen at a time; false: one by one, as the paper did
-    int light_samples = 0;  // `gather`: shadow rays per shading point to the bright part of the light
-    int max_depth = -1;     // scattering vertices of a path; −1: unlimited with Russian roulette
+        true;                // `gather`: trace rays sixteen at a time; false: one by one, as the paper did
+    int light_samples = -1;  // shadow rays per shading point to the bright part of the light; −1: `gather`
+                             // none, `cache` as many as `error` asks for
+    int max_depth = -1;      // scattering vertices of a path; −1: unlimited with Russian roulette
     std::string radiance = "auto";  // methods that gather: "emission", "direct", "path"; auto: path
     int record_size = 64;       // `reproject`, `reproject-mc`: n, a record has n × n rays; 16, 32, 64 or 128
     int record_layers = 16;     // the same: K, depth layers of a record, 1 … 64
@@ -36,6 +37,11 @@ struct RenderSettings {
     int gap_cell = 4;           // the same: k, one ray for the gaps of k × k bits; 1, 2, 4 or 8
     float bsdf_share = 0.1f;  // `reproject-mc`: share of the rays drawn from the BSDF, 0 … 1; 0: the paper's
                               // estimator, biased where records see nothing
+    float error = 0.02f;          // `cache`: the relative L1 error to aim at, 0.0005 … 0.5
+    bool unbiased = false;        // `cache`: the expectation is exact; nothing is filtered
+    bool filter_residual = true;  // `cache`: smooth what residual rays find; never where `unbiased`
+    int residual_rays = -1;  // `cache`: rays per camera sample for what maps get wrong; −1: as `error` asks
+                             // for, shared by all samples of a pixel
     std::string cache_scope = "image";  // "image", or "tile": caches of their own for tiles of 64 × 64 pixels
     std::string masking =
         "correlated";               // Smith masking-shadowing of microfacets: "correlated" or "separable"

@@ -11,11 +11,8 @@
 namespace relumine::cli {
 namespace {
 
-constexpr std::array<NotYet, 14> options_not_yet{{
-    {"--error", "the cache method"},
-    {"--unbiased", "the cache method"},
+constexpr std::array<NotYet, 11> options_not_yet{{
     {"--reference", "the report of the true error"},
-    {"--filter-residual", "the cache method"},
     {"--isa", "the choice of instruction sets"},
     {"--only-sample", "the replay of single samples"},
     {"--memory-limit", "the memory budget"},
@@ -27,8 +24,7 @@ constexpr std::array<NotYet, 14> options_not_yet{{
     {"--resume", "checkpoints"},
     {"--tev", "the live view in tev"},
 }};
-constexpr std::array<NotYet, 3> values_not_yet{{
-    {"--method cache", "the radiance cache"},
+constexpr std::array<NotYet, 2> values_not_yet{{
     {"--radiance radiosity", "precomputed radiance"},
     {"--radiance photons", "precomputed radiance"},
 }};
@@ -106,8 +102,10 @@ void add_sampling_options(CLI::App& app, RenderSettings& s) {
     add_text(app, {"--sampler", "S", "auto, sobol, stratified, independent"}, s.sampler);
     add_number(app, {"--gather-rays", "N", "rays per shading point, for gather and reproject-mc"},
                s.gather_rays, std::to_string(s.gather_rays));
-    add_number(app, {"--light-samples", "N", "shadow rays to the bright light per shading point, for gather"},
-               s.light_samples, std::to_string(s.light_samples));
+    add_number(
+        app,
+        {"--light-samples", "N", "shadow rays to the bright light per shading point, for gather and cache"},
+        s.light_samples, "gather: 0, cache: by --error");
     add_value(app, {"--gather-packets", "on|off", "trace the rays of gather sixteen at a time"}, "on",
               [&](const std::string& value) { s.gather_packets = parse_switch("--gather-packets", value); });
     add_number(app, {"--seed", "N", "same seed, same bits"}, s.seed, "0");
@@ -121,6 +119,16 @@ void add_method_options(CLI::App& app, RenderSettings& s) {
         s.bsdf_share, "0.1");
     add_text(app, {"--cache-scope", "S", "image, or tile: tiles of 64 x 64 pixels with records of their own"},
              s.cache_scope);
+}
+
+void add_cache_options(CLI::App& app, RenderSettings& s) {
+    add_number(app, {"--error", "E", "for cache: the relative error to aim at"}, s.error, "0.02");
+    app.add_flag("--unbiased", s.unbiased, "for cache: the expectation is exact, nothing is filtered");
+    add_value(
+        app, {"--filter-residual", "on|off", "for cache: smooth what residual rays find"}, "on",
+        [&](const std::string& value) { s.filter_residual = parse_switch("--filter-residual", value); });
+    add_number(app, {"--residual-rays", "N", "for cache: rays per camera sample for what the maps get wrong"},
+               s.residual_rays, "by --error");
 }
 
 void add_crop_option(CLI::App& app, RenderSettings& s) {
@@ -149,6 +157,7 @@ void add_options(CLI::App& app, RenderOptions& options) {
     add_sampling_options(app, options.settings);
     app.option_defaults()->group("Records (reproject, reproject-mc)");
     add_record_options(app, options.settings);
+    add_cache_options(app, options.settings);
     add_method_options(app, options.settings);
     app.option_defaults()->group("Light");
     add_light_options(app, options.settings);

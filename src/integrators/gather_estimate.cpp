@@ -28,7 +28,7 @@ GatherEstimate::GatherEstimate(const RenderSettings& settings, const Transport& 
     : transport_(transport),
       source_{transport, depth_limit(settings), source_depth(settings.radiance)},
       rays_(static_cast<std::uint32_t>(settings.gather_rays)),
-      light_samples_(static_cast<std::uint32_t>(settings.light_samples)),
+      light_samples_(static_cast<std::uint32_t>(std::max(settings.light_samples, 0))),
       packets_(settings.gather_packets),
       coherence_(view.point_set == PointSet::stratified ? Coherence::coherent : Coherence::incoherent) {
     const LightSelection bright{bright_threshold(transport.scene, bright_factor), false, false};

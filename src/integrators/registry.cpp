@@ -3,6 +3,7 @@
 #include "integrators/registry.hpp"
 
 #include "base/assert.hpp"
+#include "integrators/block_cache.hpp"
 #include "integrators/cached_gather.hpp"
 #include "integrators/gather.hpp"
 #include "integrators/path_tracer.hpp"
@@ -19,10 +20,9 @@ struct Method {
 };
 
 constexpr std::array methods{
-    Method{"path", make_path_tracer},
-    Method{"gather", make_gather},
-    Method{"reproject", make_reproject},
-    Method{"reproject-mc", make_reproject_mc},
+    Method{"cache", make_block_cache},   Method{"block-gather", make_block_gather},
+    Method{"path", make_path_tracer},    Method{"gather", make_gather},
+    Method{"reproject", make_reproject}, Method{"reproject-mc", make_reproject_mc},
 };
 
 }  // namespace

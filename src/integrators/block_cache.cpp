@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pipeline of `cache`, row of cells by row of cells: camera hits, maps, integrals, residual rays; then
+// the filter over what the residual rays have found.
+#include "integrators/block_cache.hpp"
+
+#include <mutex>
+
+#include "base/executor.hpp"
+#include "base/pixel_rect.hpp"
+#include "blocks/block_partition.hpp"
+#include "blocks/dim_environment.hpp"
+#include "integrators/cache_plan.hpp"
+#include "integrators/gather_estimate.hpp"
+#include "integrators/lit_sample.hpp"
+#include "integrators/path_tracer.hpp"
+#include "integrators/residual_filter.hpp"
+#include "radiance/direct_light.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr std::uint32_t samples_per_pass = 16;  // that share maps
+constexpr int filter_levels = 3, bright_filter_levels = 1;
+constexpr Frame world{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+/// Radiance over which light is bright, and below which relative errors do not matter, against the
+/// environment's mean.
+constexpr float bright_factor = 128, least_level = 0.05f;
+
+/// Texels along each side of the world's square.
+constexpr int grid_side = 64;
+
+/// A row of cells: its camera hits, and the maps that they share.
+struct CellRow {
+    PixelRect rect;
+    std::vector<std::unique_ptr<GBuffer>> samples;
+    std::vector<std::vector<BlockMap>> maps;  // by cell
+};
+
+/// What the filter needs of a pixel beside its guide.
+struct PixelResidual {
+    MapRadiance residual;
+    Spectrum bright;
+    Spectrum albedo;  // directional, times the throughput of what is before
+};
+
+/// A thread's memory for one pixel after the other.
+struct Workspace {
+    MapIntegral integral;
+    ResidualDistribution distribution;
+    std::vector<LitSample> samples;  // of the pixel
+};
+
+Spectrum divided(Spectrum a, Spectrum b) {
+    const auto channel = [](float x, float y) { return y > 1e-6f ? x / y : 0.0f; };
+    return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
+}
+
+class BlockCache final : public Integrator {
+  public:
+    BlockCache(const RenderSettings& settings, const CachePlan& plan, const Transport& transport,
+               const View& view, bool surface_layers)
+        : transport_(transport),
+          view_(view),
+          surface_layers_(surface_layers),
+          plan_(plan),
+          max_depth_(depth_limit(settings)),
+          source_{transport, max_depth_, source_depth(settings.radiance)},
+          monte_carlo_(settings, transport, view),
+          split_(transport.scene, bright_factor),
+          grid_(grid_side),
+          points_(grid_),
+          environment_(transport, split_, grid_, resolve_threads(settings.threads)) {
+        plan_.blocks.level = least_level * environment_.luminance;
+    }
+
+    [[nodiscard]] std::uint32_t shortest_pass() const override { return samples_per_pass; }
+    [[nodiscard]] std::uint32_t longest_pass() const override { return samples_per_pass; }
+
+    void prepare(Preparation& p) override {
+        const PixelRect frame{0, 0, view_.width, view_.height};
+        region_ = intersection(aligned(grown(view_.window, plan_.filters ? filter_reach(filter_levels) : 0)),
+                               frame);
+        pixels_.assign(count(region_), {});
+        residuals_.assign(plan_.filters ? count(region_) : 0, {});
+        guides_.assign(plan_.filters ? count(region_) : 0, {});
+        CellRow above, here, below = make_row(region_.y0 - cell_pixels, p);
+        CellRow next = make_row(region_.y0, p);
+        for (int y = region_.y0; y < region_.y1 && !p.stop(); y += cell_pixels) {
+            above = std::move(y == region_.y0 ? below : here);
+            here = std::move(next);
+            next = make_row(y + cell_pixels, p);
+            light_row(above, here, next, p);
+            here.samples.clear();  // the row below needs the maps alone
+        }
+        if (plan_.filters && !p.stop()) filter(p);
+    }
+
+    void render(Tile& tile) const override {
+        for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
+            for (int x = tile.rect.x0; x < tile.rect.x1; ++x)
+                tile.pixels[static_cast<std::size_t>(y - tile.rect.y0)
+                                * static_cast<std::size_t>(tile.rect.width())
+                            + static_cast<std::size_t>(x - tile.rect.x0)] = pixels_[index_of(x, y)];
+    }
+
+  private:
+    static PixelRect aligned(const PixelRect& r) {
+        const auto down = [](int v) {
+            return v >= 0 ? v / cell_pixels * cell_pixels
+                          : -((-v + cell_pixels - 1) / cell_pixels * cell_pixels);
+        };
+        return {down(r.x0), down(r.y0), down(r.x1 + cell_pixels - 1), down(r.y1 + cell_pixels - 1)};
+    }
+    static std::size_t count(const PixelRect& r) {
+        return static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height());
+    }
+    [[nodiscard]] std::size_t index_of(int x, int y) const {
+        return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width())
+               + static_cast<std::size_t>(x - region_.x0);
+    }
+
+    /// The row of cells from y on, one cell wider than the region where the frame is; empty outside of it.
+    CellRow make_row(int y, Preparation& p) const {
+        CellRow row;
+        row.rect = intersection({region_.x0 - cell_pixels, y, region_.x1 + cell_pixels, y + cell_pixels},
+                                {0, 0, view_.width, view_.height});
+        if (row.rect.y0 >= row.rect.y1) return row;
+        for (std::uint32_t s = p.first_sample; s < p.first_sample + p.sample_count; ++s)
+            row.samples.push_back(std::make_unique<GBuffer>(transport_, view_, row.rect, s, max_depth_,
+                                                            surface_layers_, p.threads, p.rays));
+        row.maps.resize(static_cast<std::size_t>((row.rect.width() + cell_pixels - 1) / cell_pixels));
+        BlockSettings blocks = plan_.blocks;
+        blocks.samples_per_pixel = static_cast<int>(p.sample_count);
+        const MapSource source{source_, split_, grid_, environment_};
+        std::mutex mutex;
+        parallel_for(p.threads, row.maps.size(), [&](std::size_t i) {
+            RayCounts rays;
+            CacheCounts counts;
+            {
+                const StepTimer timer(counts, CacheStep::create);
+                const PixelRect cell = cell_of(row, i);
+                row.maps[i] = make_maps(source, cell, points_of(row, cell), blocks, rays);
+            }
+            for (const BlockMap& map : row.maps[i])
+                counts.record_bytes += 4 * 3 * map.direct.texels[0].size();
+            counts.records = row.maps[i].size();
+            const std::lock_guard lock(mutex);
+            p.rays.add(rays);
+            p.counts.add(counts);
+        });
+        return row;
+    }
+
+    static PixelRect cell_of(const CellRow& row, std::size_t i) {
+        const int x = row.rect.x0 + static_cast<int>(i) * cell_pixels;
+        return {x, row.rect.y0, std::min(x + cell_pixels, row.rect.x1), row.rect.y1};
+    }
+
+    static std::vector<BlockPoint> points_of(const CellRow& row, const PixelRect& cell) {
+        std::vector<BlockPoint> points;
+        for (const auto& samples : row.samples)
+            for (int y = cell.y0; y < cell.y1; ++y)
+                for (int x = cell.x0; x < cell.x1; ++x)
+                    if (const GBufferPixel& pixel = samples->at(x, y); pixel.reflects_alone)
+                        points.push_back({&pixel.cache, *receiver_bsdf(pixel.point->vertex, world)});
+        return points;
+    }
+
+    void light_row(const CellRow& above, const CellRow& here, const CellRow& below, Preparation& p) {
+        std::mutex mutex;
+        parallel_for(p.threads, here.maps.size(), [&](std::size_t i) {
+            const PixelRect cell = intersection(cell_of(here, i), region_);
+            if (cell.x0 >= cell.x1) return;
+            std::vector<const BlockMap*> candidates;
+            for (const CellRow* row : {&above, &here, &below})
+                for (std::size_t j = i - std::min<std::size_t>(i, 1); j <= i + 1 && j < row->maps.size(); ++j)
+                    for (const BlockMap& map : row->maps[j])
+                        if (touches(map, cell)) candidates.push_back(&map);
+            Workspace workspace{{grid_, points_, environment_, plan_.exact}, ResidualDistribution(grid_), {}};
+            RayCounts rays;
+            CacheCounts counts;
+            for (int y = cell.y0; y < cell.y1; ++y)
+                for (int x = cell.x0; x < cell.x1; ++x)
+                    light_pixel(here, x, y, candidates, workspace, rays, counts);
+            const std::lock_guard lock(mutex);
+            p.rays.add(rays);
+            p.counts.add(counts);
+        });
+    }
+
+    static bool touches(const BlockMap& map, const PixelRect& cell) {
+        const auto apart = [&](float center, int begin, int end) {
+            return center + map.size <= static_cast<float>(begin)
+                   || center - map.size >= static_cast<float>(end);
+        };
+        return !apart(map.center_x, cell.x0, cell.x1) && !apart(map.center_y, cell.y0, cell.y1);
+    }
+
+    void light_pixel(const CellRow& row, int x, int y, std::span<const BlockMap* const> candidates,
+                     Workspace& w, RayCounts& rays, CacheCounts& counts) {
+        w.samples.clear();
+        for (const auto& samples : row.samples) {
+            LitSample& sample = w.samples.emplace_back();
+            sample.pixel = &samples->at(x, y);
+            if (sample.pixel->reflects_alone)
+                sample.bsdf = *receiver_bsdf(sample.pixel->point->vertex, world);
+        }
+        light_from_maps(candidates, w, rays, counts);
+        Tile sums = make_tile({x, y, x + 1, y + 1}, 0, 0);
+        PixelResidual residual;
+        for (const LitSample& sample : w.samples) finish_sample(sample, sums, residual, rays);
+        rays.non_finite += sums.non_finite;
+        pixels_[index_of(x, y)] = sums.pixels[0];
+        if (!plan_.filters) return;
+        residuals_[index_of(x, y)] = residual;
+        guides_[index_of(x, y)] = guide_of(row, x, y);
+    }
+
+    /// Map integrals and residual rays of a pixel's samples. Samples that see the same surface alike share an
+    /// integral.
+    void light_from_maps(std::span<const BlockMap* const> candidates, Workspace& w, RayCounts& rays,
+                         CacheCounts& counts) const {
+        const ResidualSettings settings{source_, split_, environment_, plan_.rays, plan_.exact};
+        ResidualEstimator estimator(settings, rays);
+        for (std::size_t i = 0; i < w.samples.size(); ++i) {
+            const LitSample& first = w.samples[i];
+            if (!first.pixel->reflects_alone || first.done) continue;
+            const Blend blend = blend_maps(first.pixel->cache, candidates);
+            if (blend.empty()) {
+                w.samples[i].reflected =
+                    monte_carlo_.reflected(*first.pixel->point, first.pixel->stream, rays);
+                ++counts.gathered;
+                continue;
+            }
+            integrate(first, blend, w, counts);
+            const StepTimer timer(counts, CacheStep::product);
+            for (std::size_t j = i; j < w.samples.size(); ++j) {
+                LitSample& sample = w.samples[j];
+                if (!sample.pixel->reflects_alone || sample.done
+                    || (j != i && !shares_integral(first, sample)))
+                    continue;
+                sample.done = true;
+                sample.maps = static_cast<float>(blend.maps().size());
+                const Spectrum scale = albedo_ratio(first, sample);
+                const MapRadiance held = w.integral.reflected();
+                sample.reflected = {{}, scale * held.direct, scale * held.indirect};
+                sample.albedo = scale * w.integral.albedo();
+                ++counts.points;
+                estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution, scale},
+                              sample.sampled);
+            }
+            estimator.finish();
+        }
+    }
+
+    void integrate(const LitSample& sample, const Blend& blend, Workspace& w, CacheCounts& counts) const {
+        const StepTimer timer(counts, CacheStep::shade);
+        w.integral.run(blend, sample.bsdf, sample.pixel->cache.gather.frame.n);
+        if (plan_.rays.residual == 0) return;
+        w.integral.estimate_deviations();
+        w.distribution.build(w.integral);
+    }
+
+    /// Adds a sample with all its light; what is to be filtered goes into `residual` instead.
+    void finish_sample(const LitSample& sample, Tile& sums, PixelResidual& residual, RayCounts& rays) const {
+        const GBufferPixel& pixel = *sample.pixel;
+        SplitRadiance radiance{pixel.emission, {}, {}};
+        if (pixel.point) {
+            SplitRadiance reflected = sample.reflected;
+            if (!pixel.reflects_alone) reflected = monte_carlo_.reflected(*pixel.point, pixel.stream, rays);
+            reflected.direct +=
+                delta_light(transport_, pixel.point->vertex,
+                            pixel.stream.bits(Dim::opacity, 2 * pixel.point->path.depth + 1), rays);
+            const Spectrum throughput = pixel.point->path.throughput;
+            if (!is_finite(sample.sampled.residual.direct + sample.sampled.residual.indirect
+                           + sample.sampled.bright)) {
+                ++rays.non_finite;  // and must not spread in the filter
+            } else if (plan_.filters) {
+                residual.bright += throughput * sample.sampled.bright;
+                residual.residual.direct += throughput * sample.sampled.residual.direct;
+                residual.residual.indirect += throughput * sample.sampled.residual.indirect;
+                residual.albedo += throughput * sample.albedo;
+            } else {
+                reflected.direct += sample.sampled.residual.direct + sample.sampled.bright;
+                reflected.indirect += sample.sampled.residual.indirect;
+            }
+            radiance.direct = throughput * reflected.direct;
+            radiance.indirect = throughput * reflected.indirect;
+        }
+        CacheFigures figures;
+        figures.records = sample.maps;
+        sums.add(sums.rect.x0, sums.rect.y0, pixel.stream.index, radiance, pixel.surface, figures);
+    }
+
+    FilterGuide guide_of(const CellRow& row, int x, int y) const {
+        for (const auto& samples : row.samples)
+            if (const GBufferPixel& pixel = samples->at(x, y); pixel.reflects_alone)
+                return {pixel.cache.gather.position, pixel.point->vertex.point.frame.n,
+                        pixel.cache.footprint};
+        return {};
+    }
+
+    /// Adds what rays have found, filtered: divided by what the surface reflects, smoothed, and multiplied
+    /// again.
+    void filter(const Preparation& p) {
+        const auto direct = [](const PixelResidual& r) { return r.residual.direct; };
+        const auto indirect = [](const PixelResidual& r) { return r.residual.indirect; };
+        const auto bright = [](const PixelResidual& r) { return r.bright; };
+        add_filtered(direct, filter_levels, &SplitRadiance::direct, p.threads);
+        if (source_.reflects()) add_filtered(indirect, filter_levels, &SplitRadiance::indirect, p.threads);
+        if (!split_.empty()) add_filtered(bright, bright_filter_levels, &SplitRadiance::direct, p.threads);
+    }
+
+    template <typename Part>
+    void add_filtered(const Part& part, int levels, Spectrum SplitRadiance::*light, int threads) {
+        FilterImage image{region_.width(), region_.height(), guides_, {}};
+        image.values.reserve(residuals_.size());
+        for (const PixelResidual& r : residuals_) image.values.push_back(divided(part(r), r.albedo));
+        filter_along_surfaces(image, levels, threads);
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const Spectrum sum = image.values[i] * residuals_[i].albedo;
+            pixels_[i].radiance += sum;
+            pixels_[i].split.*light += sum;
+        }
+    }
+
+    const Transport& transport_;
+    const View& view_;
+    bool surface_layers_;
+    CachePlan plan_;
+    std::uint32_t max_depth_;
+    IncidentRadiance source_;
+    GatherEstimate monte_carlo_;
+    BrightSplit split_;
+    DirectionGrid grid_;
+    QuadraturePoints points_;
+    DimEnvironment environment_;
+
+    PixelRect region_;  // that the pass computes
+    std::vector<PixelSums> pixels_;
+    std::vector<PixelResidual> residuals_;
+    std::vector<FilterGuide> guides_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_block_cache(const RenderSettings& settings, const Transport& transport,
+                                             const View& view, bool surface_layers) {
+    return std::make_unique<BlockCache>(settings, cache_plan(settings), transport, view, surface_layers);
+}
+
+std::unique_ptr<Integrator> make_block_gather(const RenderSettings& settings, const Transport& transport,
+                                              const View& view, bool surface_layers) {
+    return std::make_unique<BlockCache>(settings, block_gather_plan(settings), transport, view,
+                                        surface_layers);
+}
+
+}  // namespace relumine

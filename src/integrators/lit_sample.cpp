@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Comparing samples.
+#include "integrators/lit_sample.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr float alike = 0.02f;           // relative difference of what lobes are made of
+constexpr float least_cosine = 0.9998f;  // between normals: 1.1°
+constexpr float least_albedo = 0.01f;    // that another may be divided by
+
+bool near(Spectrum a, Spectrum b) {
+    const float size = std::max(max_component(a), max_component(b));
+    return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) <= alike * size;
+}
+
+bool lambert(const ReceiverBsdf& b) { return !b.specular && !b.coated; }
+
+bool same_place(const GatherPoint& a, const GatherPoint& b, float footprint) {
+    return a.depth == b.depth && dot(a.frame.n, b.frame.n) >= least_cosine
+           && std::abs(dot(b.position - a.position, a.frame.n)) <= footprint;
+}
+
+bool same_lobes(const ReceiverBsdf& a, const ReceiverBsdf& b) {
+    return std::abs(a.ggx.alpha - b.ggx.alpha) <= alike * a.ggx.alpha && near(a.diffuse, b.diffuse)
+           && near(a.specular_f0, b.specular_f0) && near(a.specular_f90, b.specular_f90)
+           && near(a.coat_f0, b.coat_f0) && near(a.coat_f90, b.coat_f90);
+}
+
+/// Whether b / a makes sense in every channel.
+bool divides(Spectrum a, Spectrum b) {
+    return (a.r >= least_albedo || b.r == 0) && (a.g >= least_albedo || b.g == 0)
+           && (a.b >= least_albedo || b.b == 0);
+}
+
+}  // namespace
+
+bool shares_integral(const LitSample& a, const LitSample& b) {
+    if (a.bsdf.specular != b.bsdf.specular || a.bsdf.coated != b.bsdf.coated) return false;
+    if (!same_place(a.pixel->cache.gather, b.pixel->cache.gather, a.pixel->cache.footprint)) return false;
+    if (dot(a.bsdf.shading_z, b.bsdf.shading_z) < least_cosine) return false;
+    return lambert(a.bsdf) ? divides(a.bsdf.diffuse, b.bsdf.diffuse) : same_lobes(a.bsdf, b.bsdf);
+}
+
+Spectrum albedo_ratio(const LitSample& a, const LitSample& b) {
+    if (!lambert(a.bsdf)) return Spectrum{1};
+    const auto ratio = [](float from, float to) { return to > 0 ? to / from : 0; };
+    const Spectrum from = a.bsdf.diffuse, to = b.bsdf.diffuse;
+    return {ratio(from.r, to.r), ratio(from.g, to.g), ratio(from.b, to.b)};
+}
+
+}  // namespace relumine

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A camera sample on its way from maps to the film, and which samples of a pixel are alike.
+#pragma once
+
+#include "integrators/gbuffer.hpp"
+#include "integrators/residual_rays.hpp"
+
+namespace relumine {
+
+struct LitSample {
+    const GBufferPixel* pixel = nullptr;
+    ReceiverBsdf bsdf;        // world space; only where the pixel reflects alone
+    SplitRadiance reflected;  // of the maps' radiance
+    SampledRadiance sampled;  // what residual and shadow rays add
+    Spectrum albedo;          // directional
+    float maps = 0;           // that were blended
+    bool done = false;        // has its integral
+};
+
+/// Whether the integral for `a` stands for `b` of the same pixel, but for the colour of a diffuse surface:
+/// the same maps, and lobes that look alike to within much less than their width.
+[[nodiscard]] bool shares_integral(const LitSample& a, const LitSample& b);
+
+/// How much more `b` reflects than `a`, whose integral it shares.
+[[nodiscard]] Spectrum albedo_ratio(const LitSample& a, const LitSample& b);
+
+}  // namespace relumine

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Residual rays and light samples.
+//
+//     Lo = H + Σ (f − h) / (n p) + Σ w f_bright / (b r) + Σ w f_bright / (m q)
+//
+// over n residual rays of density p, of which b have density r, and m light samples of density q. f,
+// f_bright: dim and bright radiance times BSDF; h, H: the integrand in the maps and its integral; w: the
+// power heuristic [Veach97, §9.2.4] between light samples and those residual rays that were drawn from the
+// BSDF: the others know nothing of bright light.
+#include "integrators/residual_rays.hpp"
+
+#include "base/hash.hpp"
+#include "radiance/direct_light.hpp"
+#include "shading/sampling.hpp"
+
+namespace relumine {
+namespace {
+
+/// Share of the residual rays that is drawn from the BSDF, so that no direction is left out.
+constexpr float usual_bsdf_share = 0.15f;
+
+constexpr std::uint64_t residual_purpose = 0x7265736964, light_purpose = 0x6272696768;
+
+float bsdf_share(const ResidualDistribution& distribution) {
+    return distribution.empty() ? 1 : usual_bsdf_share;
+}
+
+/// The rays of one camera sample among those of all the pixel's samples.
+struct RayRange {
+    std::uint32_t first, last, all;
+};
+
+/// On average `rays` for each of the pixel's samples, evenly spread; not a function of anything drawn.
+RayRange ray_range(float rays, const SampleStream& sample, std::uint64_t purpose) {
+    const float phase = unit_float(static_cast<std::uint32_t>(hash(sample.key, purpose)));
+    const auto before = [&](std::uint32_t i) {
+        return static_cast<std::uint32_t>(rays * static_cast<float>(i) + phase);
+    };
+    return {before(sample.index), before(sample.index + 1), before(std::max(sample.count, 1u)) + 1};
+}
+
+BsdfValue value_towards(const Vertex& vertex, WorldDir direction) {
+    const LocalDir w_in = vertex.point.frame.to_local(direction);
+    if (!(cos_theta(w_in) > 0)) return {};
+    const BsdfValue bsdf = evaluate(vertex.bsdf, vertex.w_out, w_in);
+    // BSDF sampling also goes where the geometric surface is in the way.
+    return sides_agree(vertex.point, direction) ? bsdf : BsdfValue{{}, bsdf.pdf};
+}
+
+}  // namespace
+
+void ResidualEstimator::add(const IntegratedPoint& point, SampledRadiance& sum) {
+    const auto each = [&](float rays, std::uint64_t purpose, const auto& use) {
+        const RayRange range = ray_range(rays, point.stream, purpose);
+        for (std::uint32_t i = range.first; i < range.last; ++i)
+            use(SampleStream{hash(point.stream.key, purpose), i, range.all, point.stream.set});
+    };
+    if (settings_.budget.residual > 0)
+        each(settings_.budget.residual, residual_purpose,
+             [&](const SampleStream& stream) { add_residual(point, stream, sum); });
+    if (settings_.budget.light > 0 && !settings_.split.empty())
+        each(settings_.budget.light, light_purpose,
+             [&](const SampleStream& stream) { add_light(point, stream, sum); });
+}
+
+void ResidualEstimator::finish() {
+    trace_residual();
+    trace_light();
+}
+
+/// A direction from the deviations or from the BSDF.
+std::optional<ResidualEstimator::Drawn> ResidualEstimator::draw(const IntegratedPoint& point,
+                                                                const SampleStream& stream) {
+    const Vertex& vertex = point.x.vertex;
+    const std::uint32_t depth = point.x.path.depth;
+    if (stream.next1(Dim::light_choice, depth) >= bsdf_share(point.distribution)) {
+        const ResidualSample s = point.distribution.sample(stream.next2(Dim::direction, depth));
+        return Drawn{s.direction, s.texel, false};
+    }
+    const BsdfRandom u{has_lobes(vertex.bsdf) ? stream.next1(Dim::lobe, depth) : 0.0f,
+                       stream.next2(Dim::direction, depth)};
+    const auto scattered = sample(vertex.bsdf, vertex.w_out, u);
+    if (!scattered) return {};
+    const WorldDir direction = vertex.point.frame.to_world(scattered->w_in);
+    return Drawn{direction, point.integral.grid().texel_at(direction), true};
+}
+
+void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleStream& stream,
+                                     SampledRadiance& sum) {
+    const Vertex& vertex = point.x.vertex;
+    const std::uint32_t depth = point.x.path.depth;
+    if (residual_count_ > 0 && depth != depth_) trace_residual();
+    depth_ = depth;
+    const std::optional<Drawn> drawn = draw(point, stream);
+    if (!drawn) return;
+    const BsdfValue bsdf = value_towards(vertex, drawn->direction);
+    const float share = bsdf_share(point.distribution), rays = settings_.budget.residual;
+    const float guided = point.distribution.empty() ? 0 : point.distribution.pdf(drawn->texel);
+    const float density = rays * ((1 - share) * guided + share * bsdf.pdf);
+    if (!(density > 0)) return;
+    const Spectrum h = settings_.exact ? point.scale * point.integral.bsdf_at(drawn->texel) : bsdf.value;
+    const MapRadiance held = point.integral.radiance_at(drawn->texel);
+    const std::size_t lane = residual_count_++;
+    residual_[lane] = {&sum,       drawn->texel,
+                       bsdf.value, {h * held.direct, h * held.indirect},
+                       density,    drawn->from_bsdf ? rays * share * bsdf.pdf : 0};
+    residual_streams_[lane] = stream;
+    residual_rays_[lane] = {ray_origin(vertex.point, drawn->direction), drawn->direction,
+                            is_black(bsdf.value) ? -1 : infinity, stream.bits(Dim::opacity, 2 * depth + 2)};
+    if (residual_count_ == packet_size) trace_residual();
+}
+
+void ResidualEstimator::trace_residual() {
+    if (residual_count_ == 0) return;
+    std::array<Hit, packet_size> hits;
+    for (std::size_t lane = residual_count_; lane < packet_size; ++lane) residual_rays_[lane].t_max = -1;
+    for (std::size_t lane = 0; lane < residual_count_; ++lane) {
+        if (residual_rays_[lane].t_max < 0) continue;
+        counts_.add(RayPurpose::residual);
+        hits[lane] = settings_.source.transport.tracer.closest_hit(residual_rays_[lane]);
+    }
+    const RadiancePacket found =
+        incident_radiance(settings_.source, residual_rays_, hits, depth_ + 1, residual_streams_, counts_);
+    for (std::size_t lane = 0; lane < residual_count_; ++lane)
+        collect(residual_[lane], residual_rays_[lane], hits[lane], found[lane]);
+    residual_count_ = 0;
+}
+
+void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const Hit& hit,
+                                const SplitRadiance& found) const {
+    BrightSplit::Part bright;
+    if (!is_black(found.direct))
+        bright = hit ? settings_.split.of_emission(ray, hit)
+                     : settings_.split.of_environment(ray.direction, found.direct);
+    const bool true_dim = hit || settings_.exact || ray.t_max < 0;
+    const Spectrum dim =
+        true_dim ? found.direct * (1 - bright.share) : settings_.environment.texels[drawn.texel];
+    SampledRadiance& sum = *drawn.sum;
+    sum.residual.direct += (drawn.bsdf * dim - drawn.held.direct) / drawn.density;
+    sum.residual.indirect += (drawn.bsdf * found.indirect - drawn.held.indirect) / drawn.density;
+    if (bright.share > 0 && drawn.bsdf_density > 0)
+        sum.bright += drawn.bsdf * found.direct
+                      * (bright.share * mis_weight(drawn.bsdf_density, settings_.budget.light * bright.pdf)
+                         / drawn.bsdf_density);
+}
+
+void ResidualEstimator::add_light(const IntegratedPoint& point, const SampleStream& stream,
+                                  SampledRadiance& sum) {
+    const Vertex& vertex = point.x.vertex;
+    const std::uint32_t depth = point.x.path.depth;
+    const auto light =
+        settings_.split.lights().sample(vertex.point.position, stream.next2(Dim::light_point, depth));
+    if (!light || !(light->pdf > 0)) return;
+    const BsdfValue bsdf = value_towards(vertex, light->w_in);
+    const Spectrum radiance = bsdf.value * light->radiance * settings_.split.share(*light);
+    if (is_black(radiance)) return;
+    const float density = settings_.budget.light * light->pdf;
+    const float bsdf_density = settings_.budget.residual * bsdf_share(point.distribution) * bsdf.pdf;
+    light_[light_count_] = {&sum, radiance * (mis_weight(density, bsdf_density) / density)};
+    light_rays_[light_count_++] = shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1));
+    if (light_count_ == packet_size) trace_light();
+}
+
+void ResidualEstimator::trace_light() {
+    if (light_count_ == 0) return;
+    for (std::size_t lane = light_count_; lane < packet_size; ++lane) light_rays_[lane].t_max = -1;
+    std::array<bool, packet_size> blocked;
+    counts_.add(RayPurpose::shadow, light_count_);
+    settings_.source.transport.tracer.occluded(light_rays_, blocked);
+    for (std::size_t lane = 0; lane < light_count_; ++lane)
+        if (!blocked[lane]) light_[lane].sum->bright += light_[lane].reflected;
+    light_count_ = 0;
+}
+
+}  // namespace relumine
