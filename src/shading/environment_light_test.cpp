@@ -105,6 +105,40 @@ TEST(EnvironmentLight, DensityCoversWhateverShines) {
     }
 }
 
+/// Of the texels only those count within which the interpolant may exceed the threshold; there weights stay
+/// bounded.
+TEST(EnvironmentLight, DensityCoversWhateverExceedsTheThreshold) {
+    Environment e = random_environment(16, 8, 0.5f);
+    const float threshold = 4;  // of values up to 7
+    const EnvironmentLight light(e, 0, threshold);
+    ASSERT_TRUE(light.can_sample());
+    int bright = 0, left_out = 0;
+    float heaviest = 0, total = 0;
+    constexpr int draws = 100'000;
+    for (std::uint32_t i = 0; i < draws; ++i) {
+        const auto [x, y] = SampleStream{2, i, 1, PointSet::independent}.next2(Dim::light_point);
+        const float z = 1 - 2 * y, sine = std::sqrt(1 - z * z);
+        const WorldDir d{{sine * std::cos(2 * pi * x), z, sine * std::sin(2 * pi * x)}};
+        const Spectrum radiance = light.radiance(d);
+        const float excess = (radiance.r + radiance.g + radiance.b) / 3 - threshold, density = light.pdf(d);
+        if (excess > 0) {
+            ASSERT_GT(density, 0);
+            heaviest = std::max(heaviest, excess / density);
+            total += excess * 4 * pi / draws;
+        }
+        bright += excess > 0;
+        left_out += !(density > 0);
+    }
+    EXPECT_GT(bright, draws / 200);
+    EXPECT_GT(left_out, draws / 50);
+    EXPECT_LT(heaviest, 30 * total);
+    for (std::uint32_t i = 0; i < 10'000; ++i) {
+        const auto s = light.sample(SampleStream{3, i, 1, PointSet::independent}.next2(Dim::light_point));
+        ASSERT_NEAR(light.pdf(s.direction), s.pdf, 2e-3f * s.pdf);
+    }
+    EXPECT_FALSE(EnvironmentLight(e, 0, 8).can_sample());
+}
+
 TEST(EnvironmentLight, AUniformSkyNeedsNoSamplesWhenCompensated) {
     const Environment uniform{16, 8, std::vector<Spectrum>(128, Spectrum{3}), 0};
     EXPECT_FALSE(EnvironmentLight(uniform, EnvironmentLight::mean_radiance(uniform) * 1.0001f).can_sample());
