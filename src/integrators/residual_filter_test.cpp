@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// The filter over residuals: along surfaces, not across their edges, as far as it says.
+#include "integrators/residual_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/hash.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr int width = 48, height = 40, levels = 3;
+
+std::size_t at(int x, int y) { return static_cast<std::size_t>(y * width + x); }
+
+/// A floor seen from above, a pixel covers a centimetre; values by pixel.
+template <typename Value>
+FilterImage floor_with(const Value& value) {
+    FilterImage image{width, height, {}, {}};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            image.guides.push_back(
+                {{0.01f * static_cast<float>(x), 0.01f * static_cast<float>(y), 0}, {0, 0, 1}, 0.01f});
+            image.values.push_back(value(x, y));
+        }
+    return image;
+}
+
+Spectrum noise(int x, int y) { return Spectrum{unit_float(static_cast<std::uint32_t>(hash(at(x, y), 1)))}; }
+
+TEST(ResidualFilter, KeepsAConstant) {
+    FilterImage image = floor_with([](int, int) { return Spectrum{0.3f, -2, 5}; });
+    for (int x = 0; x < width; x += 7) image.guides[at(x, 9)].normal = normalize({1, 0.3f, 1});
+    filter_along_surfaces(image, levels, 2);
+    for (const Spectrum& v : image.values) {
+        ASSERT_NEAR(v.r, 0.3f, 1e-6f);
+        ASSERT_NEAR(v.g, -2, 1e-5f);
+        ASSERT_NEAR(v.b, 5, 2e-5f);
+    }
+}
+
+TEST(ResidualFilter, LowersNoise) {
+    FilterImage image = floor_with(noise);
+    const auto variance = [&] {
+        double sum = 0, squares = 0;
+        for (const Spectrum& v : image.values) sum += v.r, squares += double{v.r} * v.r;
+        const auto n = static_cast<double>(image.values.size());
+        return squares / n - sum / n * (sum / n);
+    };
+    const double before = variance();
+    filter_along_surfaces(image, levels, 1);
+    EXPECT_LT(variance(), before / 30);
+}
+
+/// Where a single lit pixel is spread to.
+FilterImage spread(int filter_levels) {
+    FilterImage image = floor_with([](int x, int y) { return Spectrum{x == 20 && y == 18 ? 1.0f : 0.0f}; });
+    filter_along_surfaces(image, filter_levels, 1);
+    return image;
+}
+
+TEST(ResidualFilter, ReachesAsFarAsItSays) {
+    for (const int n : {1, 2, 3}) {
+        const FilterImage image = spread(n);
+        int farthest = 0;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                if (image.values[at(x, y)].r > 0)
+                    farthest = std::max({farthest, std::abs(x - 20), std::abs(y - 18)});
+        EXPECT_EQ(farthest, filter_reach(n)) << n;
+    }
+    EXPECT_EQ(filter_reach(0), 0);
+    EXPECT_EQ(spread(0).values[at(20, 18)], Spectrum{1});
+}
+
+/// Left and right of x = 24 lie surfaces that `change` tells apart; how much of a step of 1 leaks over.
+template <typename Change>
+float leak(const Change& change) {
+    FilterImage image = floor_with([](int x, int) { return Spectrum{x < 24 ? 1.0f : 0.0f}; });
+    for (int y = 0; y < height; ++y)
+        for (int x = 24; x < width; ++x) change(image.guides[at(x, y)]);
+    filter_along_surfaces(image, levels, 1);
+    float most = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            most = std::max(most, std::abs(image.values[at(x, y)].r - (x < 24 ? 1.0f : 0.0f)));
+    return most;
+}
+
+TEST(ResidualFilter, DoesNotMixSurfaces) {
+    EXPECT_GT(leak([](FilterGuide&) {}), 0.3f);  // one surface
+    EXPECT_LT(leak([](FilterGuide& g) { g.normal = {1, 0, 0}; }), 1e-6f);
+    EXPECT_LT(leak([](FilterGuide& g) { g.normal = normalize({1, 0, 1}); }), 1e-4f);
+    EXPECT_LT(leak([](FilterGuide& g) { g.position.z += 1; }), 1e-4f);
+}
+
+TEST(ResidualFilter, SkipsPixelsWithoutASurface) {
+    FilterImage image = floor_with([](int x, int y) { return Spectrum{x == 5 && y == 5 ? 1000.0f : 1.0f}; });
+    image.guides[at(5, 5)].footprint = 0;
+    filter_along_surfaces(image, levels, 1);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            if (x != 5 || y != 5) {
+                ASSERT_NEAR(image.values[at(x, y)].r, 1, 1e-5f);
+            }
+        }
+    EXPECT_TRUE(is_black(image.values[at(5, 5)]));
+}
+
+TEST(ResidualFilter, IsTheSameForAnyNumberOfThreads) {
+    FilterImage one = floor_with(noise), seven = one;
+    filter_along_surfaces(one, levels, 1);
+    filter_along_surfaces(seven, levels, 7);
+    EXPECT_EQ(one.values, seven.values);
+}
+
+}  // namespace
+}  // namespace relumine
