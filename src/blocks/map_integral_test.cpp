@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integrals over maps: furnaces, closed forms, and the piecewise constant integrand behind them.
+#include "blocks/map_integral.hpp"
+
+#include <gtest/gtest.h>
+
+#include "blocks/test_maps.hpp"
+
+namespace relumine {
+namespace {
+
+using testing::MapStage;
+using testing::open_map;
+using testing::random_map;
+
+constexpr Frame world{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+Vertex vertex_of(const Bsdf& bsdf, float view_cosine, Vec3 normal = normalize({0.2f, -0.3f, 0.9f})) {
+    Vertex vertex{
+        {},
+        {{std::sqrt(1 - sqr(view_cosine)) * 0.8f, std::sqrt(1 - sqr(view_cosine)) * 0.6f, view_cosine}},
+        bsdf};
+    vertex.point.frame = frame_around(normal);
+    vertex.point.geometric_normal = normal;
+    return vertex;
+}
+
+/// The BSDF times the environment's radiance, or 1, integrated by sampling the BSDF on a grid of 512².
+Spectrum by_sampling(const Vertex& vertex, const LightSampler* lights) {
+    constexpr int side = 512;
+    double r = 0, g = 0, b = 0;
+    for (int i = 0; i < side * side; ++i) {
+        const Point2 u{(static_cast<float>(i % side) + 0.5f) / side,
+                       (static_cast<float>(i / side) + 0.5f) / side};
+        const auto s = sample(vertex.bsdf, vertex.w_out, {0, u});
+        if (!s) continue;
+        Spectrum value = s->weight;
+        if (lights) value = value * lights->environment_radiance(vertex.point.frame.to_world(s->w_in));
+        r += value.r;
+        g += value.g;
+        b += value.b;
+    }
+    constexpr double n = side * side;
+    return {static_cast<float>(r / n), static_cast<float>(g / n), static_cast<float>(b / n)};
+}
+
+Blend blend_of(const std::vector<BlockMap>& maps) {
+    Blend blend;
+    for (std::size_t i = 0; i < maps.size(); ++i) blend.add(maps[i], static_cast<float>(i + 1));
+    blend.normalize();
+    return blend;
+}
+
+MapIntegral integral_of(const MapStage& stage, const QuadraturePoints& points, bool exact, const Blend& blend,
+                        const Vertex& vertex) {
+    MapIntegral integral(stage.grid(), points, stage.environment(), exact);
+    integral.run(blend, *receiver_bsdf(vertex, world), vertex.point.geometric_normal);
+    return integral;
+}
+
+Bsdf metal(float alpha) { return RoughConductor{{0.9f, 0.7f, 0.5f}, {alpha, Masking::correlated}}; }
+Bsdf plastic() {
+    return MetallicRoughness{{0.5f, 0.2f, 0.1f},
+                             Spectrum{0.04f},
+                             Spectrum{1},
+                             Spectrum{0.04f},
+                             Spectrum{1},
+                             {0.2f, Masking::correlated},
+                             false};
+}
+
+class MapIntegrals : public ::testing::Test {
+  protected:
+    const MapStage stage{{}, testing::even_sky(Spectrum{1}), 64};
+    const QuadraturePoints points{stage.grid()};
+    const std::vector<BlockMap> white{open_map(stage.grid(), [](std::size_t) { return Spectrum{1}; })};
+};
+
+TEST_F(MapIntegrals, ReflectTheAlbedoInAWhiteFurnace) {
+    for (const bool exact : {false, true})
+        for (const Bsdf& bsdf : {Bsdf{Lambert{{0.8f, 0.5f, 0.2f}}}, metal(0.07f), metal(0.5f), plastic()}) {
+            const MapIntegral integral =
+                integral_of(stage, points, exact, blend_of(white), vertex_of(bsdf, 0.7f));
+            const Spectrum reflected = integral.reflected().direct, albedo = integral.albedo();
+            EXPECT_NEAR(reflected.r, albedo.r, 1e-5f);
+            EXPECT_NEAR(reflected.g, albedo.g, 1e-5f);
+            EXPECT_NEAR(reflected.b, albedo.b, 1e-5f);
+            EXPECT_TRUE(is_black(integral.reflected().indirect));
+        }
+}
+
+TEST_F(MapIntegrals, HaveTheAlbedoOfMatteSurfaces) {
+    for (const Vec3 normal : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, -1, 0}, normalize({1, 1, -1})}) {
+        const Vertex vertex = vertex_of(Lambert{{0.8f, 0.5f, 0.2f}}, 0.5f, normal);
+        const Spectrum albedo = integral_of(stage, points, false, blend_of(white), vertex).albedo();
+        EXPECT_NEAR(albedo.r, 0.8f, 0.8f * 0.001f);
+        EXPECT_NEAR(albedo.b, 0.2f, 0.2f * 0.001f);
+    }
+}
+
+TEST_F(MapIntegrals, HaveTheAlbedoOfGlossySurfaces) {  // against sampling the BSDF
+    for (const float alpha : {0.5f, 0.2f, 0.07f})
+        for (const float view : {0.95f, 0.6f, 0.3f}) {
+            const Vertex vertex = vertex_of(metal(alpha), view);
+            const Spectrum albedo = integral_of(stage, points, false, blend_of(white), vertex).albedo(),
+                           expected = by_sampling(vertex, nullptr);
+            EXPECT_NEAR(albedo.r, expected.r, 0.005f * expected.r) << alpha << " " << view;
+            EXPECT_NEAR(albedo.b, expected.b, 0.005f * expected.b) << alpha << " " << view;
+        }
+}
+
+/// Σ f·L·dω over all texels.
+MapRadiance sum_over_texels(const MapIntegral& integral) {
+    std::array<double, 6> sums{};
+    for (std::uint32_t texel = 0; texel < integral.grid().texels; ++texel) {
+        const Spectrum f = integral.bsdf_at(texel) * integral.grid().texel_solid_angle;
+        const MapRadiance l = integral.radiance_at(texel);
+        for (int c = 0; c < 3; ++c) {
+            const auto channel = [&](Spectrum s) { return double{c == 0 ? s.r : c == 1 ? s.g : s.b}; };
+            sums[static_cast<std::size_t>(c)] += channel(f * l.direct);
+            sums[static_cast<std::size_t>(3 + c)] += channel(f * l.indirect);
+        }
+    }
+    const auto real = [&](std::size_t i) { return static_cast<float>(sums[i]); };
+    return {{real(0), real(1), real(2)}, {real(3), real(4), real(5)}};
+}
+
+TEST_F(MapIntegrals, AreTheSumOfTheirIntegrandWhereExact) {
+    const std::vector<BlockMap> maps{random_map(stage.grid(), 3), random_map(stage.grid(), 300),
+                                     random_map(stage.grid(), 900)};
+    for (const Bsdf& bsdf : {Bsdf{Lambert{{0.8f, 0.5f, 0.2f}}}, metal(0.07f), metal(0.5f), plastic()})
+        for (const float view : {0.9f, 0.2f}) {
+            const MapIntegral integral =
+                integral_of(stage, points, true, blend_of(maps), vertex_of(bsdf, view));
+            const MapRadiance expected = sum_over_texels(integral), found = integral.reflected();
+            EXPECT_NEAR(found.direct.r, expected.direct.r, 1e-4f * expected.direct.r);
+            EXPECT_NEAR(found.direct.b, expected.direct.b, 1e-4f * expected.direct.b);
+            EXPECT_NEAR(found.indirect.r, expected.indirect.r, 1e-4f * expected.indirect.r);
+            EXPECT_NEAR(found.indirect.g, expected.indirect.g, 1e-4f * expected.indirect.g);
+            EXPECT_GT(expected.indirect.g, 0.05f);
+        }
+}
+
+/// A shading normal that leans over the horizon: what is below the surface does not count.
+TEST_F(MapIntegrals, LeaveOutWhatIsBelowTheSurface) {
+    Vertex vertex = vertex_of(Lambert{Spectrum{1}}, 0.8f, {0, 0, 1});
+    vertex.point.geometric_normal = normalize({0.8f, 0, 0.6f});
+    const Spectrum albedo = integral_of(stage, points, false, blend_of(white), vertex).albedo();
+    const float expected = (1 + 0.6f) / 2;  // the projected disc's visible part: (1 + cos θ) / 2
+    EXPECT_NEAR(albedo.r, expected, 0.005f);
+}
+
+TEST_F(MapIntegrals, EstimateNoDeviationWhereNothingIsReflected) {
+    MapIntegral integral =
+        integral_of(stage, points, false, blend_of(white), vertex_of(Lambert{Spectrum{0.5f}}, 0.8f));
+    integral.estimate_deviations();
+    for (std::size_t tile = 0; tile < stage.grid().tiles; ++tile) {
+        const float height = dot(stage.grid().tile_center(tile).v, normalize({0.2f, -0.3f, 0.9f}));
+        if (height < -stage.grid().tile_sine[tile]) {
+            EXPECT_EQ(integral.deviations()[tile], 0);
+        }
+        if (height > stage.grid().tile_sine[tile]) {
+            EXPECT_GT(integral.deviations()[tile], 0);
+        }
+    }
+}
+
+Environment striped_sky() {
+    Environment e{256, 128, {}, 0.3f};
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 256; ++x) {
+            const float wave =
+                std::sin(static_cast<float>(x) * 0.5f) * std::cos(static_cast<float>(y) * 0.4f);
+            e.radiance.push_back(Spectrum{1 + 0.9f * wave, 1 - 0.9f * wave, 0.5f});
+        }
+    return e;
+}
+
+/// Waves of 18° under lobes as wide: texels' means would blur them.
+TEST(MapIntegralDetail, ResolvesTheEnvironmentInSharpLobes) {
+    const MapStage stage({}, striped_sky(), 64);
+    const QuadraturePoints points(stage.grid());
+    const std::vector<BlockMap> maps{
+        open_map(stage.grid(), [&](std::size_t texel) { return stage.environment().texels[texel]; })};
+    float blurred = 0;
+    for (const float alpha : {0.15f, 0.07f, 0.03f})
+        for (const float view : {0.95f, 0.8f, 0.6f}) {
+            const Vertex vertex = vertex_of(metal(alpha), view);
+            const Spectrum expected = by_sampling(vertex, &stage.transport().lights);
+            const Spectrum found =
+                integral_of(stage, points, false, blend_of(maps), vertex).reflected().direct;
+            EXPECT_NEAR(found.r, expected.r, 0.005f * expected.r) << alpha << " " << view;
+            EXPECT_NEAR(found.g, expected.g, 0.005f * expected.g) << alpha << " " << view;
+            EXPECT_NEAR(found.b, expected.b, 0.005f * expected.b) << alpha << " " << view;
+            const Spectrum means =
+                integral_of(stage, points, true, blend_of(maps), vertex).reflected().direct;
+            blurred = std::max(blurred, std::abs(means.r / expected.r - 1));
+        }
+    EXPECT_GT(blurred, 0.01f);  // without the detail it would not do
+}
+
+}  // namespace
+}  // namespace relumine
