@@ -61,6 +61,10 @@ TEST(Cli, HelpNamesEveryOptionAndItsDefault) {
                                "--gap-cell",
                                "--bsdf-share",
                                "--cache-scope",
+                               "--error",
+                               "--unbiased",
+                               "--filter-residual",
+                               "--residual-rays",
                                "(default 16)",
                                "(default 4096)",
                                "(default box)"})
@@ -74,16 +78,14 @@ struct Usage {
 
 TEST(Cli, RefusesWhatDoesNotExistYetByName) {
     const Workplace work;
-    for (const char* option : {"--error", "--unbiased", "--reference", "--filter-residual", "--isa",
-                               "--only-sample", "--memory-limit", "--preview", "--denoise", "--allow-dir",
-                               "--time-limit", "--checkpoint", "--resume", "--tev"})
+    for (const char* option :
+         {"--reference", "--isa", "--only-sample", "--memory-limit", "--preview", "--denoise", "--allow-dir",
+          "--time-limit", "--checkpoint", "--resume", "--tev"})
         expect_one_line(work.render({option, "1"}), 2,
                         std::string(option) + " is not available yet: it comes with ");
-    for (const Usage& usage :
-         std::vector<Usage>{{{"--tev=localhost:14158"}, "--tev is not available yet"},
-                            {{"--method", "cache"}, "--method cache is not available yet"},
-                            {{"--radiance", "radiosity"}, "--radiance radiosity is not"},
-                            {{"--radiance", "photons"}, "--radiance photons is not"}})
+    for (const Usage& usage : std::vector<Usage>{{{"--tev=localhost:14158"}, "--tev is not available yet"},
+                                                 {{"--radiance", "radiosity"}, "--radiance radiosity is not"},
+                                                 {{"--radiance", "photons"}, "--radiance photons is not"}})
         expect_one_line(work.render(usage.arguments), 2, usage.words);
     expect_one_line(run_relumine({"relight"}), 2, "relight is not available yet");
 }
@@ -137,7 +139,7 @@ TEST(Cli, RefusesSettingsOutOfRange) {
         {{"--seed", "-1"}, "--seed: expected a whole number from 0"},
         {{"--seed", "18446744073709551616"}, "--seed: expected a whole number"},
         {{"--gather-rays", "0", "--method", "gather"}, "found 0"},
-        {{"--light-samples", "-1", "--method", "gather"}, "found -1"},
+        {{"--light-samples", "-2", "--method", "gather"}, "found -2"},
         {{"--max-depth", "-2"}, "found -2"},
         {{"--exposure", "nan"}, "--exposure: expected a finite number"},
         {{"--env-rotate", "x"}, "--env-rotate: expected a finite number"},
@@ -164,6 +166,17 @@ TEST(Cli, RefusesSettingsOutOfRange) {
         {{"--bsdf-share", "2"}, "BSDF share: expected 0 to 1, found 2"},
         {{"--bsdf-share", "-0.1"}, "found -0.1"},
         {{"--bsdf-share", "x"}, "--bsdf-share: expected a finite number"},
+        {{"--error", "0"}, "error: expected 0.0005 to 0.5, found 0"},
+        {{"--error", "0.0004"}, "error: expected 0.0005 to 0.5, found 0.0004"},
+        {{"--error", "0.6"}, "error: expected 0.0005 to 0.5, found 0.6"},
+        {{"--error", "nan"}, "--error: expected a finite number"},
+        {{"--error", "2%"}, "--error: expected a finite number"},
+        {{"--residual-rays", "-2"}, "residual rays: expected -1 to 1048576, found -2"},
+        {{"--residual-rays", "1048577"}, "found 1048577"},
+        {{"--residual-rays", "1.5"}, "--residual-rays: expected a whole number"},
+        {{"--filter-residual", "maybe"}, "--filter-residual: expected on or off, found \"maybe\""},
+        {{"--light-samples", "-2", "--method", "cache"}, "found -2"},
+        {{"--method", "cach"}, "did you mean \"cache\"?"},
         {{"--cache-scope", "x"}, "cache scope: expected image or tile, found \"x\""},
         {{"--cache-scope", "til"}, "did you mean \"tile\"?"},
         {{"--method", "reproject-mcc"}, "did you mean \"reproject-mc\"?"},
