@@ -40,6 +40,10 @@ RenderSettings settings_for(const Case& c) {
         if (c.cache_scope == "tile") settings.samples_per_pixel = 2;
         for (const char* layer : {"records", "gaps", "layers", "unknown"}) settings.aovs.emplace_back(layer);
     }
+    if (c.method == "cache") {
+        settings.error = 0.05f;
+        settings.max_depth = 3;
+    }
     return settings;
 }
 
@@ -74,7 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"reproject", "demo.glb"}, Case{"reproject", "cornell-glossy.glb", "tile"},
                       Case{"reproject", "demo.glb", "tile"}, Case{"reproject-mc", "cornell-glossy.glb"},
                       Case{"reproject-mc", "demo.glb"}, Case{"reproject-mc", "cornell-glossy.glb", "tile"},
-                      Case{"reproject-mc", "demo.glb", "tile"}));
+                      Case{"reproject-mc", "demo.glb", "tile"}, Case{"cache", "cornell-glossy.glb"},
+                      Case{"cache", "demo.glb"}));
 
 TEST_P(Determinism, ThreadsDoNotChangeABit) {
     const Scene scene = scene_of(GetParam());
@@ -108,6 +113,31 @@ TEST_P(Determinism, SeedsMatter) {
     const Image first = render(scene, settings);
     settings.seed = 1;
     EXPECT_NE(first.layer()->pixels, render(scene, settings).layer()->pixels);
+}
+
+/// Maps are shared by blocks of cells of 16 pixels, and the filter reaches 14 pixels further: the frame must
+/// be longer than that.
+TEST(CacheRegion, ACropHasTheBitsOfTheWhole) {
+    const Scene scene = scene_of({"cache", "cornell-glossy.glb"});
+    RenderSettings settings = settings_for({"cache", "cornell-glossy.glb"});
+    settings.radiance = "emission";
+    settings.width = 130;
+    settings.height = 110;
+    for (const int samples : {1, 4})
+        for (const bool unbiased : {false, true}) {
+            settings.crop = {};
+            settings.samples_per_pixel = samples;
+            settings.unbiased = unbiased;
+            settings.threads = 1;
+            const Image whole = render(scene, settings);
+            settings.threads = 7;
+            expect_same_bits(render(scene, settings), whole);
+            for (const PixelRect crop : {PixelRect{64, 48, 65, 49}, {50, 50, 63, 52}, {31, 80, 33, 97}}) {
+                settings.crop = crop;
+                SCOPED_TRACE(samples);
+                expect_same_bits(render(scene, settings), whole);
+            }
+        }
 }
 
 /// Placement reaches 126 pixels and a crop's first sample looks twice as far: the frame must be longer than

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cache`: unbiased where asked to be, else as close to `gather` as its error says; right in furnaces.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "tests/render_support.hpp"
+
+namespace relumine {
+namespace {
+
+using testing::agreement_p;
+using testing::block_means;
+using testing::Estimate;
+using testing::estimate;
+using testing::mean_of;
+using testing::project_scene;
+using testing::welch_p;
+
+constexpr double false_positive_rate = 1e-5;  // of each check below, for each scene; seeds are fixed
+constexpr int side = 12, block_side = 4;      // pixels
+
+/// One picture for each seed from 1 on, as block means.
+using Pictures = std::vector<std::vector<double>>;
+
+Pictures render_seeds(const Scene& scene, RenderSettings settings, std::size_t count) {
+    settings.threads = 1;  // seeds go in parallel instead
+    Pictures pictures(count);
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+        RenderSettings mine = settings;
+        for (std::size_t i = next++; i < count; i = next++) {
+            mine.seed = i + 1;
+            pictures[i] = block_means(render(scene, mine), block_side);
+        }
+    };
+    std::vector<std::jthread> threads(std::max(1u, std::thread::hardware_concurrency()));
+    for (std::jthread& thread : threads) thread = std::jthread(work);
+    threads.clear();  // joins
+    return pictures;
+}
+
+std::vector<Estimate> blocks(const Pictures& pictures) {
+    std::vector<Estimate> estimates;
+    for (std::size_t block = 0; block < pictures.front().size(); ++block) {
+        std::vector<double> values;
+        for (const auto& picture : pictures)
+            values.push_back(
+                static_cast<float>(picture[block]));  // without the last digits of what is seen directly
+        estimates.push_back(estimate(values));
+    }
+    return estimates;
+}
+
+/// Of the whole picture.
+Estimate whole(const Pictures& pictures) {
+    std::vector<double> means;
+    for (const auto& picture : pictures) {
+        double sum = 0;
+        for (const double block : picture) sum += block;
+        means.push_back(sum / static_cast<double>(picture.size()));
+    }
+    return estimate(means);
+}
+
+struct Case {
+    const char *name, *scene, *environment, *radiance;
+    int max_depth;
+};
+const std::array cases{
+    Case{"Cornell", "cornell-glossy.glb", "", "path", 4},                       // a lamp, a glossy floor
+    Case{"Sunny", "shadow.glb", "sky.exr", "emission", -1},                     // a small sun, sharp metal
+    Case{"Open", "validation/open.glb", "validation/sky.pfm", "emission", -1},  // nothing bright
+};
+
+RenderSettings settings_for(const Case& c, const std::string& method) {
+    RenderSettings settings;
+    settings.method = method;
+    settings.width = settings.height = side;
+    settings.samples_per_pixel = 1;
+    settings.pixel_sampling = "center";  // no noise from edges in view
+    settings.radiance = c.radiance;
+    settings.max_depth = c.max_depth;
+    settings.gather_rays = 1024;
+    return settings;
+}
+
+RenderSettings unbiased(const Case& c) {
+    RenderSettings settings = settings_for(c, "cache");
+    settings.unbiased = true;
+    settings.residual_rays = 64;
+    settings.light_samples = 32;
+    return settings;
+}
+
+RenderSettings gathered(const Case& c) {
+    RenderSettings settings = settings_for(c, "gather");
+    settings.light_samples = 256;
+    return settings;
+}
+
+class CacheScenes : public ::testing::TestWithParam<std::size_t> {
+  protected:
+    const Case& scene_case = cases[GetParam()];
+    const Scene scene = project_scene(scene_case.scene, scene_case.environment);
+};
+INSTANTIATE_TEST_SUITE_P(Scenes, CacheScenes, ::testing::Range(std::size_t{0}, cases.size()),
+                         [](const auto& c) { return cases[c.param].name; });
+
+/// Block means: Welch, 9 blocks, Šidák. The picture's mean: Welch; a planted bias of 1 % must be caught.
+TEST_P(CacheScenes, UnbiasedItIsGather) {
+    const Pictures reference = render_seeds(scene, gathered(scene_case), 16);
+    const Pictures cached = render_seeds(scene, unbiased(scene_case), 96);
+    const Estimate mean = whole(cached), expected = whole(reference);
+    EXPECT_GT(agreement_p(blocks(cached), blocks(reference)), false_positive_rate);
+    EXPECT_GT(welch_p(mean, expected), false_positive_rate) << mean.mean << " " << expected.mean;
+    EXPECT_LT(std::hypot(mean.standard_error, expected.standard_error), 0.0018 * expected.mean);
+    for (const double scale : {0.99, 1.01})
+        EXPECT_LT(welch_p({scale * mean.mean, scale * mean.standard_error, mean.count}, expected),
+                  false_positive_rate)
+            << scale;
+}
+
+/// Σ|a − b| / Σ b over all channels.
+double difference(const Image& a, const Image& b) {
+    double sum = 0, all = 0;
+    for (std::size_t i = 0; i < b.layer()->pixels.size(); ++i) {
+        sum += std::abs(a.layer()->pixels[i] - b.layer()->pixels[i]);
+        all += b.layer()->pixels[i];
+    }
+    return sum / all;
+}
+
+TEST_P(CacheScenes, ComesCloserToGatherTheLessErrorIsAllowed) {
+    RenderSettings reference = gathered(scene_case), settings = settings_for(scene_case, "cache");
+    for (RenderSettings* s : {&reference, &settings}) {
+        s->width = s->height = 40;
+        s->radiance = "emission";
+    }
+    reference.gather_rays = 8192;
+    reference.light_samples = 2048;
+    const Image expected = render(scene, reference);
+    settings.error = 0.04f;
+    const double coarse = difference(render(scene, settings), expected);
+    settings.error = 0.005f;
+    const double fine = difference(render(scene, settings), expected);
+    EXPECT_LT(fine, coarse);
+    EXPECT_LT(coarse, 0.1);
+    settings.filter_residual =
+        false;  // it blurs what is smaller than a few pixels: small pictures are full of that
+    settings.residual_rays = settings.light_samples = 256;
+    const double sampled = difference(render(scene, settings), expected);
+    EXPECT_LT(sampled, 0.015);
+    EXPECT_LT(sampled, fine);
+    if (GetParam() == 0) {  // of large surfaces
+        EXPECT_LT(fine, 0.015);
+    }
+}
+
+RenderSettings small(const std::string& method, int samples) {
+    RenderSettings settings;
+    settings.method = method;
+    settings.samples_per_pixel = samples;
+    settings.width = settings.height = 32;
+    settings.gather_rays = 64;  // behind glass
+    return settings;
+}
+
+class CacheMethods : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, CacheMethods, ::testing::Values("cache", "block-gather"));
+
+TEST_P(CacheMethods, ClosedFurnaceIsOne) {
+    for (const char* name : {"furnace-walls-50.glb", "furnace-walls-80.glb"})
+        EXPECT_NEAR(mean_of(render(project_scene(name), small(GetParam(), 8))), 1, 0.003) << name;
+}
+
+TEST_P(CacheMethods, FurnaceOfLimitedDepthIsItsPartialSum) {  // emission .5, albedo .5: ½ + ¼ + …
+    RenderSettings settings = small(GetParam(), 8);
+    for (int depth = 0; depth < 4; ++depth) {
+        settings.max_depth = depth;
+        EXPECT_NEAR(mean_of(render(project_scene("furnace-walls-50.glb"), settings)),
+                    1 - std::pow(0.5, depth + 1), 0.003)
+            << depth;
+    }
+}
+
+TEST_P(CacheMethods, WhiteBodiesVanishInAWhiteSky) {
+    const Image image = render(project_scene("furnace-diffuse.glb", "white.pfm"), small(GetParam(), 4));
+    EXPECT_NEAR(mean_of(image), 1, 0.003);
+    for (const float pixel : image.layer()->pixels) ASSERT_NEAR(pixel, 1, 0.1f);
+}
+
+TEST_P(CacheMethods, MetalLosesWhatSingleScatteringLoses) {  // scenes/README.md
+    EXPECT_NEAR(mean_of(render(project_scene("furnace-metal.glb", "white.pfm"), small(GetParam(), 4))), 0.987,
+                0.003);
+}
+
+TEST_P(CacheMethods, GreySphereIsOne) {  // a point light, and what it makes of the walls
+    EXPECT_NEAR(mean_of(render(project_scene("grey-sphere.glb"), small(GetParam(), 8))), 1, 0.005);
+}
+
+TEST_P(CacheMethods, GlassIsLeftToPaths) {
+    for (const char* name : {"furnace-glass.glb", "furnace-rough-glass.glb"}) {
+        const Image image = render(project_scene(name, "white.pfm"), small(GetParam(), 4));
+        for (const float pixel : image.layer()->pixels) {
+            ASSERT_TRUE(std::isfinite(pixel));
+            ASSERT_GE(pixel, 0);
+        }
+        EXPECT_NEAR(mean_of(image), 0.985, 0.025) << name;
+    }
+}
+
+TEST_P(CacheMethods, EveryPixelIsFinite) {  // textures, glass, mirrors, a sun
+    const Image image = render(project_scene("demo.glb", "sky.exr"), small(GetParam(), 2));
+    for (const float pixel : image.layer()->pixels) ASSERT_TRUE(std::isfinite(pixel));
+    EXPECT_GT(mean_of(image), 0);
+}
+
+}  // namespace
+}  // namespace relumine
