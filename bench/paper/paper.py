@@ -9,13 +9,14 @@ import platform
 import sys
 import tempfile
 
-import environments
-import experiment
-import make_scenes
-import report
-from command import Relumine
-from experiment import Cell, Lab, log
-from reference import References, digest
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+import environments  # noqa: E402  (after the path)
+import experiment  # noqa: E402
+import make_scenes  # noqa: E402
+import report  # noqa: E402
+from command import Relumine  # noqa: E402
+from experiment import Cell, Lab, log  # noqa: E402
+from reference import References, digest  # noqa: E402
 
 PARTS = ("methods", "scaling", "sweeps", "convergence")
 REPORTED = ("n", "size", "sweep_size", "repeats", "threads", "quick", "reference_ratio", "reference_rays",
