@@ -41,14 +41,19 @@ class Run:
 
 @dataclasses.dataclass(frozen=True)
 class View:
-    """What is rendered: a scene under an environment, turned by `env_rotate` degrees, size x size pixels."""
+    """What is rendered: a scene under an environment (None: its own), turned by `env_rotate` degrees."""
     scene: pathlib.Path
-    environment: pathlib.Path
+    environment: pathlib.Path | None
     env_rotate: float
-    size: int
+    width: int
+    height: int
+    extra: Options = dataclasses.field(default_factory=dict)  # what it needs beyond PAPER_SETTINGS
 
     def options(self) -> Options:
-        return {"environment": str(self.environment), "env-rotate": self.env_rotate, "size": f"{self.size}x{self.size}"}
+        lit: Options = {}
+        if self.environment:
+            lit = {"environment": str(self.environment), "env-rotate": self.env_rotate}
+        return {**lit, "size": f"{self.width}x{self.height}", **self.extra}
 
 
 # One ray through the middle of each pixel; a secondary ray brings back the environment, or black from a surface.

@@ -8,6 +8,7 @@ COLOURS = ("#1f77b4", "#d95f02", "#1b9e77", "#c2185b", "#7570b3", "#8a6d00", "#4
 WIDTH, HEIGHT = 380, 260  # of a panel, pixels
 LEFT, RIGHT, TOP, BOTTOM = 62, 14, 30, 44
 LEGEND_LINE = 18
+MOST_VALUES = 8  # along x; if there are more, round numbers stand there instead
 
 
 @dataclasses.dataclass
@@ -50,7 +51,8 @@ def _panel(panel: Panel, colours: dict[str, str]) -> list[str]:
              f'{escape(panel.y_label)}</text>',
              f'<rect x="{LEFT}" y="{TOP}" width="{WIDTH - LEFT - RIGHT}" height="{HEIGHT - TOP - BOTTOM}" fill="none" '
              'stroke="#999"/>']
-    for x in sorted({p[0] for p in points}):
+    at = sorted({p[0] for p in points})
+    for x in at if len(at) <= MOST_VALUES else _ticks(x_low, x_high):
         parts.append(f'<text x="{x_at(x):.1f}" y="{HEIGHT - BOTTOM + 14}" text-anchor="middle">{x:g}</text>')
     for y in _ticks(y_low, y_high):
         parts.append(f'<line x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{y_at(y):.1f}" y2="{y_at(y):.1f}" stroke="#ddd"/>'

@@ -83,6 +83,9 @@ class References:
         return result
 
     def _file(self, view: View) -> pathlib.Path:
-        what = [SCHEME, digest(view.scene), digest(view.environment), view.env_rotate, view.size, self.options]
+        light = digest(view.environment) if view.environment else None
+        size = view.width if view.width == view.height else f"{view.width}x{view.height}"
+        what = [SCHEME, digest(view.scene), light, view.env_rotate, size, {**view.extra, **self.options}]
         key = hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:10]
-        return self.folder / f"{view.scene.stem}-{view.environment.stem}-{view.size}-{key}.npz"
+        name = "-".join([view.scene.stem, *([view.environment.stem] if view.environment else [])])
+        return self.folder / f"{name}-{size}-{key}.npz"

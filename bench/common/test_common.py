@@ -13,7 +13,7 @@ import meshes
 import metrics
 import pictures
 import plots
-from command import looked_up
+from command import View, looked_up
 
 
 def cube() -> meshes.Mesh:
@@ -147,6 +147,19 @@ class Metrics(unittest.TestCase):
         self.assertAlmostEqual(e.rms, np.sqrt(0.8 / 3) / 2)
         self.assertAlmostEqual(e.maximum, 0.4)
 
+    def test_block_errors_see_bias_but_not_noise_within_a_block(self):
+        reference, keep = np.full((40, 24, 3), 2.0), np.ones((40, 24), bool)
+        sign = np.where(np.indices((40, 24)).sum(axis=0) % 2, 1.0, -1.0)[:, :, None]
+        self.assertAlmostEqual(metrics.block_error(reference + 0.5 * sign, reference, keep), 0)
+        self.assertAlmostEqual(metrics.block_error(reference - 0.1, reference, keep), 0.05)
+        half = reference.copy()
+        half[:16] += 0.1
+        half[16:] -= 0.1
+        self.assertAlmostEqual(metrics.block_error(half, reference, keep), 0.05)
+        keep[:, 12:] = False
+        half[:, 12:] = 99
+        self.assertAlmostEqual(metrics.block_error(half, reference, keep), 0.05)
+
     def test_the_error_of_a_mean_is_estimated_from_its_halves(self):
         generator = np.random.default_rng(3)
         truth, keep = np.full((200, 200, 3), 5.0), np.ones((200, 200), bool)
@@ -202,6 +215,20 @@ class Looks(unittest.TestCase):
         import xml.etree.ElementTree as tree
         text = plots.chart([plots.Panel("error < 1 %", "n", "L1", {"a & b": [(16, 0.1), (32, 0.05)]})])
         self.assertTrue(tree.fromstring(text).tag.endswith("svg"))
+
+    def test_many_values_along_x_get_round_numbers(self):
+        line = [(1.1 + 0.37 * i, 1.0) for i in range(30)]
+        text = plots.chart([plots.Panel("", "x", "y", {"a": line})])
+        self.assertIn(">10</text>", text)
+        self.assertNotIn(">1.47</text>", text)
+
+
+class Views(unittest.TestCase):
+    def test_options_of_a_view(self):
+        lit = View(pathlib.Path("a.glb"), pathlib.Path("sky.pfm"), 30.0, 64, 32)
+        self.assertEqual(lit.options(), {"environment": "sky.pfm", "env-rotate": 30.0, "size": "64x32"})
+        own = View(pathlib.Path("a.glb"), None, 0.0, 64, 32, {"radiance": "direct"})
+        self.assertEqual(own.options(), {"size": "64x32", "radiance": "direct"})
 
 
 if __name__ == "__main__":

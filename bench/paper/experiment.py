@@ -58,7 +58,7 @@ class Cell:
         return f"{self.scene.name}, {self.environment}"
 
     def view(self, size: int) -> View:
-        return View(self.scene.file, self.file, self.scene.env_rotate, size)
+        return View(self.scene.file, self.file, self.scene.env_rotate, size, size)
 
 
 def log(text: str) -> None:
