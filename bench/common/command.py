@@ -13,11 +13,15 @@ import pictures
 NOT_MEASURED = ("build", "lights")  # stages before the first ray; every method has them alike
 BAD_USAGE = 2  # exit code: an option or a method that this build does not have
 
-Options = dict[str, str | int | float]
+Options = dict[str, str | int | float]  # an option without a value has ""
 
 
 class Refused(Exception):
     """The command does not know a method or an option; the text is its own message."""
+
+
+class Failed(SystemExit):
+    """The command ended with any other exit code, or by a signal; ends the program unless it is caught."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -68,18 +72,18 @@ class Relumine:
         return subprocess.run([self.program, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
 
     def render(self, view: View, options: Options, seed: int, threads: int) -> Run:
-        """Raises Refused where the command lacks what `options` ask for; ends the program at any other failure."""
+        """Raises Refused where the command lacks what `options` ask for, Failed where it ends otherwise than well."""
         picture, stats = self.scratch / "picture.pfm", self.scratch / "stats.json"
         every = {**PAPER_SETTINGS, **view.options(), **options, "seed": seed, "threads": threads, "stats": stats}
         command = [str(self.program), "render", str(view.scene), "-o", str(picture), "--quiet"]
-        command += [word for key, value in every.items() for word in (f"--{key}", str(value))]
+        command += [word for key, value in every.items() for word in (f"--{key}", str(value)) if word]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         if done.returncode == BAD_USAGE:
             raise Refused(done.stderr.strip())
         if done.returncode != 0:
-            raise SystemExit(f"{' '.join(command)}\n{done.stderr.strip()}\nexit code {done.returncode}")
+            raise Failed(f"{' '.join(command)}\n{done.stderr.strip()}\nexit code {done.returncode}")
         cpu = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
         return Run(pictures.read_pfm(picture), json.loads(stats.read_text()), cpu)
 
