@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is compared: each method with budgets from cheap to dear, as options of `relumine render`."""
+from command import Options
+
+PATH_TYPE = ("path", "gather-sobol", "gather")  # independent samples for every pixel: the rivals
+BLOCK_RIVAL = "block-gather"
+OURS = ("cache", "cache-unbiased")
+
+WORDS = {
+    "path": "MIS path sampling, Owen-scrambled Sobol points; a camera sample per path",
+    "gather-sobol": "Sobol rays drawn from the BSDF, with and without samples of the bright part of the light (MIS)",
+    "gather": "stratified rays drawn from the BSDF, in packets: the paper's baseline",
+    "block-gather": "one traced map per block of 8 × 8 pixels, integrated per pixel; no reprojection",
+    "reproject": "the paper's method: records of n² rays",
+    "reproject-mc": "the paper's unbiased method",
+    "cache": "maps for blocks whose size follows the error wanted, residual rays, filtered",
+    "cache-unbiased": "the same, exact in expectation, nothing filtered",
+}
+
+
+def budgets(path_depth: int, spp: int, quick: bool) -> dict[str, list[Options]]:
+    """Names to options, cheap to dear. `path_depth`: scattering vertices that make `path` see what gather rays do.
+
+    Numbers of rays are per pixel; with several camera samples each gets its part of them.
+    """
+    def each(total: int) -> int:
+        return max(1, total // spp)
+
+    def rays(*totals: int) -> list[int]:
+        return sorted({each(n) for n in totals})
+
+    path = [4**i for i in range(5 if quick else 7)]
+    sobol = rays(4, 16, 64, 256) if quick else rays(4, 16, 64, 256, 1024)
+    plain = rays(256) if quick else rays(256, 1024, 4096)
+    errors = [0.08, 0.02, 0.005, 0.001] if quick else [0.08, 0.04, 0.02, 0.01, 0.005, 0.002, 0.001]
+    sizes = [32] if quick else [32, 64, 128]
+    residual = rays(4, 16, 64, 256) if quick else rays(4, 16, 64, 256, 1024)
+    return {
+        "path": [{"method": "path", "max-depth": path_depth, "sampler": "sobol", "spp": n} for n in path],
+        "gather-sobol": [{"method": "gather", "sampler": "sobol", "gather-rays": n, "light-samples": m}
+                         for n in sobol for m in (0, max(1, n // 4))],
+        "gather": [{"method": "gather", "gather-rays": n} for n in plain],
+        "block-gather": [{"method": "block-gather", "error": e} for e in errors],
+        "reproject": [{"method": "reproject", "record-size": n} for n in sizes],
+        "reproject-mc": [{"method": "reproject-mc", "gather-rays": n} for n in plain],
+        "cache": [{"method": "cache", "error": e} for e in errors],
+        "cache-unbiased": [{"method": "cache", "unbiased": "", "residual-rays": n, "light-samples": m}
+                           for n in residual for m in (max(1, n // 4), n)],
+    }
+
+
+def words(options: Options) -> str:
+    """As on the command line."""
+    return " ".join(f"--{key} {value}".strip() for key, value in options.items())
