@@ -63,9 +63,9 @@ HWY_INLINE VF dot(const Vec3s& a, Vec3 b) {
 /// A midpoint rule's error, relative to the value, may be so large.
 constexpr float quadrature_tolerance = 0.004f;
 
-/// The error of one point per tile for a GGX lobe. The half vector moves half as much as the direction; over
-/// a square of side s the error is s²/24 times the Laplacian, which is (20 t² − 4) / (α² (1 + t²)²) of the
-/// value, t = tan θ_m / α.
+/// The error of one point per tile for a GGX lobe. The half vector moves half as much as the direction in the
+/// plane of incidence and 1 / |w_in + w_out| as much across it; over a square of side s the error is s²/24
+/// times the Laplacian, which is (20 t² − 4) / (α² (1 + t²)²) of the value, t = tan θ_m / α.
 HWY_INLINE VF lobe_error(const Vec3s& d, const TierQuery& q, float side2) {
     const F f;
     const Vec3s half{hn::Add(d.x, constant(q.w_out.x)), hn::Add(d.y, constant(q.w_out.y)),
@@ -74,7 +74,10 @@ HWY_INLINE VF lobe_error(const Vec3s& d, const TierQuery& q, float side2) {
     const VF length2 = hn::MulAdd(half.x, half.x, hn::MulAdd(half.y, half.y, squared(half.z)));
     const float inverse_alpha2 = 1 / sqr(q.alpha);
     const VF t2 = hn::Mul(hn::Div(hn::Max(hn::Sub(length2, z2), hn::Zero(f)), z2), constant(inverse_alpha2));
-    const VF numerator = hn::MulAdd(t2, constant(20), constant(4));
+    // The mean of the squares, against half as much along both axes.
+    const VF axes =
+        hn::MulAdd(constant(2), hn::Div(constant(1), hn::Max(length2, constant(1e-6f))), constant(0.5f));
+    const VF numerator = hn::Mul(axes, hn::MulAdd(t2, constant(20), constant(4)));
     return hn::Div(hn::Mul(numerator, constant(side2 / 24 * inverse_alpha2)),
                    squared(hn::Add(t2, constant(1))));
 }

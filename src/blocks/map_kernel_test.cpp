@@ -89,7 +89,9 @@ float lobe_error(Vec3 d, const TierQuery& q, float side2) {
     const Vec3 half = normalize(d + q.w_out);
     const float cosine = std::max(std::abs(dot(half, q.shading_normal)), 1e-6f);
     const float t2 = (1 / sqr(cosine) - 1) / sqr(q.alpha);
-    return (20 * t2 + 4) / sqr(1 + t2) * side2 / (24 * sqr(q.alpha));
+    // The half vector's motion squared, mean of both axes, against half the direction's.
+    const float axes = 0.5f + 2 / length_squared(d + q.w_out);
+    return axes * (20 * t2 + 4) / sqr(1 + t2) * side2 / (24 * sqr(q.alpha));
 }
 
 /// The tier, or empty where rounding may decide.
