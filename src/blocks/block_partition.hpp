@@ -18,7 +18,7 @@ struct BlockPoint {
 };
 
 struct BlockSettings {
-    int largest = 16, smallest = 1;  // pixels along a block's side; powers of two, largest ≤ cell_pixels
+    int largest = 16, smallest = 4;  // pixels along a block's side; powers of two, largest ≤ cell_pixels
     float tolerance = 0.05f;  // of the parallax error that makes a block split, relative to what is reflected
     float rays_per_pixel = 24;     // that small groups are worth
     float level = 0;               // radiance that errors are relative to where there is less

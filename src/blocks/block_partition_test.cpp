@@ -145,7 +145,9 @@ TEST(BlockPartition, OneMapDoesUnderTheSkyAlone) {
 
 TEST(BlockPartition, SplitsWhereSurfacesMeet) {
     const MapStage stage({wall_beside_floor}, even_sky(Spectrum{1}), 32);
-    const auto maps = maps_of(stage, floor_of(cell_pixels));
+    BlockSettings fine;
+    fine.smallest = 1;
+    const auto maps = maps_of(stage, floor_of(cell_pixels), fine);
     EXPECT_GT(maps.size(), 4u);
     float near = infinity,
           far = 0;  // the sides of the smallest block at the wall and of the largest away from it

@@ -309,7 +309,9 @@ class BlockCache final : public Integrator {
         const auto bright = [](const PixelResidual& r) { return r.bright; };
         add_filtered(direct, filter_levels, &SplitRadiance::direct, p.threads);
         if (source_.reflects()) add_filtered(indirect, filter_levels, &SplitRadiance::indirect, p.threads);
-        if (!split_.empty()) add_filtered(bright, bright_filter_levels, &SplitRadiance::direct, p.threads);
+        if (!split_.empty())
+            add_filtered(bright, plan_.filters_bright ? bright_filter_levels : 0, &SplitRadiance::direct,
+                         p.threads);
     }
 
     template <typename Part>

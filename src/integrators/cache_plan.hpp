@@ -12,6 +12,7 @@ struct CachePlan {
     BlockSettings blocks;
     RayBudget rays;
     bool exact = false, filters = false;
+    bool filters_bright = false;  // what light samples find, too
 };
 
 /// At an error of 2 %: blocks with a parallax error of a fifth, for each pixel 8 residual rays and 16 shadow
