@@ -7,7 +7,7 @@
 namespace relumine {
 namespace {
 
-constexpr int least_samples = 2, most_samples = 16;  // per texel of the finest grid, along each side
+constexpr int least_samples = 4, most_samples = 16;  // per texel of the finest grid, along each side
 
 /// So many that no texel of the environment is missed, within reason.
 int samples_along_side(const Environment& e, const DirectionGrid& grid) {
