@@ -86,8 +86,8 @@ class Partition {
         map.size = static_cast<float>(size);
         map.center_x = static_cast<float>(x) + 0.5f * map.size;
         map.center_y = static_cast<float>(y) + 0.5f * map.size;
-        trace_map(source_, starts, tile_rays(group, starts), hash(group.front()->point->key, size), map,
-                  distances_, rays_);
+        trace_map(source_, starts, tile_rays(group, starts),
+                  hash(group.front()->point->key, static_cast<std::uint64_t>(size)), map, distances_, rays_);
         return map;
     }
 
