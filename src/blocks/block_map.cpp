@@ -22,6 +22,13 @@ void RadiancePlanes::resize(const DirectionGrid& grid) {
     for (auto& plane : tile_means) plane.assign(grid.tiles, 0);
 }
 
+std::size_t BlockMap::bytes() const {
+    std::size_t floats = tile_luminance.size() + tile_variance.size();
+    for (const RadiancePlanes* planes : {&direct, &indirect})
+        floats += 3 * (planes->texels[0].size() + planes->tile_means[0].size());
+    return sizeof(BlockMap) + sizeof(float) * floats + sizeof(std::uint16_t) * (known.size() + open.size());
+}
+
 void BlockMap::finish(const DirectionGrid& grid) {
     std::vector<float> share(grid.tiles);
     for (std::size_t tile = 0; tile < grid.tiles; ++tile)

@@ -41,6 +41,9 @@ struct BlockMap {
     std::vector<std::uint16_t> open;   // the same: nothing but the environment is seen
     std::vector<float> tile_luminance, tile_variance;  // mean and variance of luminance within each tile
 
+    /// Memory that the map occupies.
+    [[nodiscard]] std::size_t bytes() const;
+
     /// Derives what is kept by tile.
     void finish(const DirectionGrid& grid);
 };

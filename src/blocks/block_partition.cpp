@@ -15,7 +15,7 @@ constexpr float plane_tolerance = 0.25f;
 /// Rays may start at so many samples of a group, and so many say which directions matter.
 constexpr std::size_t most_starts = 8, most_receivers = 4;
 
-/// A map is traced with one ray per texel where its group is worth that many rays in all.
+/// However few samples a group has, its map gets about so many rays.
 constexpr float least_rays = 96;
 
 float distance_from(float x, float y, const CachePoint& point) {

@@ -142,8 +142,7 @@ class BlockCache final : public Integrator {
                 const PixelRect cell = cell_of(row, i);
                 row.maps[i] = make_maps(source, cell, points_of(row, cell), blocks, rays);
             }
-            for (const BlockMap& map : row.maps[i])
-                counts.record_bytes += 4 * 3 * map.direct.texels[0].size();
+            for (const BlockMap& map : row.maps[i]) counts.record_bytes += map.bytes();
             counts.records = row.maps[i].size();
             const std::lock_guard lock(mutex);
             p.rays.add(rays);
