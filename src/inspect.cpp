@@ -9,6 +9,7 @@
 #include "base/rgbe.hpp"
 #include "inspect_steps.hpp"
 #include "integrators/cached_gather.hpp"
+#include "integrators/light_source.hpp"
 #include "integrators/path_tracer.hpp"
 #include "radiance/direct_light.hpp"
 #include "relumine/error.hpp"
@@ -65,7 +66,7 @@ class Inspector {
         : setup_(setup),
           max_depth_(depth_limit(settings)),
           threads_(resolve_threads(settings.threads)),
-          source_{setup.transport, max_depth_, source_depth(settings.radiance)},
+          source_(incident_source(settings, setup.transport)),
           settings_(cache_settings(settings)) {
         p_.x = x;
         p_.y = y;
@@ -195,7 +196,13 @@ class Inspector {
 Inspection inspect(const Scene& scene, const RenderSettings& wanted, int x, int y) {
     const RenderSettings settings = reprojecting(wanted);
     const Framing framing = frame_of_pixel(scene.data(), settings, x, y);
-    const RenderSetup setup(scene.data(), settings, framing, [](const char*) {});
+    RenderSetup setup(scene.data(), settings, framing, [](const char*) {});
+    std::unique_ptr<RadianceField> field;
+    if (wants_field(settings)) {
+        RayCounts rays;
+        field = make_field(settings, setup.transport, setup.view, {}, rays);
+        setup.transport.field = field.get();
+    }
     const InspectedPoint point = Inspector(setup, settings, x, y).run();
     Inspection inspection{draw_pictures(point), {}};
     inspection.report_json = report_json(point, inspection.pictures);

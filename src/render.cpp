@@ -11,6 +11,7 @@
 
 #include "base/executor.hpp"
 #include "film/film.hpp"
+#include "integrators/light_source.hpp"
 #include "integrators/registry.hpp"
 #include "render_setup.hpp"
 
@@ -37,6 +38,10 @@ CacheStats cache_stats(const CacheCounts& c) {
     for (std::size_t i = 0; i < cache_step_names.size(); ++i)
         stats.cpu_seconds.emplace_back(cache_step_names[i], 1e-9 * static_cast<double>(c.nanoseconds[i]));
     return stats;
+}
+
+FieldStats field_stats(const FieldFigures& f) {
+    return {f.elements, f.links, f.iterations, f.bytes, f.unresolved};
 }
 
 /// Measures stages and passes progress on; calls to the observer never overlap.
@@ -86,6 +91,10 @@ class Monitor {
         const std::lock_guard lock(mutex_);
         rays_.add(p.rays);
         cache_.add(p.counts);
+    }
+    void add(const RayCounts& rays) {
+        const std::lock_guard lock(mutex_);
+        rays_.add(rays);
     }
     [[nodiscard]] RenderStats stats(int threads) {
         end_stage();
@@ -215,7 +224,16 @@ Image render(const Scene& scene, const RenderSettings& settings, RenderObserver*
     const int threads = resolve_threads(settings.threads);
 
     Monitor monitor(observer);
-    const RenderSetup setup(data, settings, framing, [&](const char* stage) { monitor.begin_stage(stage); });
+    RenderSetup setup(data, settings, framing, [&](const char* stage) { monitor.begin_stage(stage); });
+    std::unique_ptr<RadianceField> field;
+    if (wants_field(settings)) {
+        RayCounts rays;
+        monitor.begin_stage("field");
+        field = make_field(
+            settings, setup.transport, setup.view, [&] { return monitor.stop(); }, rays);
+        monitor.add(rays);
+        setup.transport.field = field.get();
+    }
     const auto integrator =
         make_integrator(settings, setup.transport, setup.view, needs_surfaces(settings.aovs));
 
@@ -224,6 +242,7 @@ Image render(const Scene& scene, const RenderSettings& settings, RenderObserver*
     Image image = film.develop();
     RenderStats stats = monitor.stats(threads);
     stats.samples = film.samples();
+    if (field) stats.field = field_stats(field->figures());
     describe(image, settings, stats);
     if (observer) observer->finished(stats);
     return image;

@@ -89,7 +89,7 @@ void validate(const RenderSettings& s) {
     }
     check_cache(s);
     check_range("max depth", s.max_depth, -1, million);
-    check_name("radiance", s.radiance, {"auto", "emission", "direct", "path"});
+    check_name("radiance", s.radiance, {"auto", "emission", "direct", "radiosity", "path"});
     check_name("masking", s.masking, {"correlated", "separable"});
     check_range("threads", s.threads, 0, 4096);
     check_frame(s);

@@ -28,6 +28,14 @@ std::string RenderStats::to_json() const {
         out["gap_rays"] = rays.contains("gap") ? rays.at("gap") : 0;
         for (const auto& [step, seconds] : cache->cpu_seconds) out["cpu_seconds"][step] = seconds;
     }
+    if (field) {
+        nlohmann::ordered_json& out = json["field"];
+        out["elements"] = field->elements;
+        out["links"] = field->links;
+        out["iterations"] = field->iterations;
+        out["bytes"] = field->bytes;
+        out["unresolved_links"] = field->unresolved_links;
+    }
     json["peak_memory_bytes"] = peak_memory_bytes;
     json["threads"] = threads;
     json["stopped"] = stopped;

@@ -90,6 +90,7 @@ RenderSettings settings_for(const Case& c, const std::string& method) {
 RenderSettings unbiased(const Case& c) {
     RenderSettings settings = settings_for(c, "cache");
     settings.unbiased = true;
+    if (settings.radiance == std::string("path")) settings.radiance = "auto";  // maps from a radiance field
     settings.residual_rays = 64;
     settings.light_samples = 32;
     return settings;

@@ -84,7 +84,6 @@ TEST(Cli, RefusesWhatDoesNotExistYetByName) {
         expect_one_line(work.render({option, "1"}), 2,
                         std::string(option) + " is not available yet: it comes with ");
     for (const Usage& usage : std::vector<Usage>{{{"--tev=localhost:14158"}, "--tev is not available yet"},
-                                                 {{"--radiance", "radiosity"}, "--radiance radiosity is not"},
                                                  {{"--radiance", "photons"}, "--radiance photons is not"}})
         expect_one_line(work.render(usage.arguments), 2, usage.words);
     expect_one_line(run_relumine({"relight"}), 2, "relight is not available yet");

@@ -29,7 +29,8 @@ struct RenderSettings {
     int light_samples = -1;  // shadow rays per shading point to the bright part of the light; −1: `gather`
                              // none, `cache` as many as `error` asks for
     int max_depth = -1;      // scattering vertices of a path; −1: unlimited with Russian roulette
-    std::string radiance = "auto";  // methods that gather: "emission", "direct", "path"; auto: path
+    std::string radiance = "auto";  // methods that gather: "emission", "direct", "radiosity", "path"; auto:
+                                    // radiosity where light is reflected more than once
     int record_size = 64;       // `reproject`, `reproject-mc`: n, a record has n × n rays; 16, 32, 64 or 128
     int record_layers = 16;     // the same: K, depth layers of a record, 1 … 64
     float record_spacing = 1;   // the same: factor on how far records are used, 0.01 … 100
@@ -69,6 +70,13 @@ struct CacheStats {
     std::vector<std::pair<std::string, double>> cpu_seconds;  // by step, all threads together
 };
 
+/// The radiance field of `radiance` = "radiosity".
+struct FieldStats {
+    std::uint64_t elements = 0, links = 0, iterations = 0;
+    std::uint64_t bytes = 0;      // while it is used
+    double unresolved_links = 0;  // share of the links that led nowhere
+};
+
 /// What a render did. Counts are of this run alone; times are wall-clock seconds unless said.
 struct RenderStats {
     std::vector<std::pair<std::string, double>> stage_seconds;  // in order: "build", "lights", "render", …
@@ -81,6 +89,7 @@ struct RenderStats {
     std::uint64_t non_finite_rays = 0;                            // of records and gaps: counted as black
     std::optional<std::array<std::int64_t, 3>> first_non_finite;  // x, y, sample index, to replay it
     std::optional<CacheStats> cache;                              // of methods that keep records
+    std::optional<FieldStats> field;                              // where there is one
     std::uint64_t peak_memory_bytes = 0;                          // resident set of the process
     int threads = 0;
     bool stopped = false;  // the observer asked to stop: fewer samples than wanted

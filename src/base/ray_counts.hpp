@@ -17,10 +17,11 @@ enum class RayPurpose : std::uint8_t {
     record,
     gap,
     product,
-    residual
+    residual,
+    field
 };
-inline constexpr std::array<const char*, 9> ray_purpose_names{
-    "camera", "prefix", "gather", "bounce", "shadow", "record", "gap", "product", "residual"};
+inline constexpr std::array<const char*, 10> ray_purpose_names{
+    "camera", "prefix", "gather", "bounce", "shadow", "record", "gap", "product", "residual", "field"};
 
 struct RayCounts {
     std::array<std::uint64_t, ray_purpose_names.size()> by_purpose{};

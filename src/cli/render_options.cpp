@@ -24,8 +24,7 @@ constexpr std::array<NotYet, 11> options_not_yet{{
     {"--resume", "checkpoints"},
     {"--tev", "the live view in tev"},
 }};
-constexpr std::array<NotYet, 2> values_not_yet{{
-    {"--radiance radiosity", "precomputed radiance"},
+constexpr std::array<NotYet, 1> values_not_yet{{
     {"--radiance photons", "precomputed radiance"},
 }};
 
@@ -194,7 +193,8 @@ void add_light_options(CLI::App& app, RenderSettings& s) {
     add_number(
         app, {"--max-depth", "N", "scattering vertices of a path: 0 emission, 1 direct light; -1 unlimited"},
         s.max_depth, "-1");
-    add_value(app, {"--radiance", "S", "what a gather ray brings back: auto, emission, direct, path"},
+    add_value(app,
+              {"--radiance", "S", "what a gather ray brings back: auto, emission, direct, radiosity, path"},
               s.radiance, [&](const std::string& source) {
                   refuse_planned_value("--radiance", source);
                   s.radiance = source;

@@ -6,6 +6,7 @@
 #include "cache/gap_fill.hpp"
 #include "integrators/gather_estimate.hpp"
 #include "integrators/gbuffer.hpp"
+#include "integrators/light_source.hpp"
 #include "integrators/path_tracer.hpp"
 #include "integrators/product_rays.hpp"
 #include "radiance/direct_light.hpp"
@@ -34,7 +35,7 @@ class CachedGather final : public Integrator {
           view_(view),
           surface_layers_(surface_layers),
           max_depth_(depth_limit(settings)),
-          source_{transport, max_depth_, source_depth(settings.radiance)},
+          source_(incident_source(settings, transport)),
           monte_carlo_(settings, transport, view),
           settings_(cache_settings(settings)),
           per_tile_(settings.cache_scope == "tile") {

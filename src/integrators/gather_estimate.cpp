@@ -3,7 +3,7 @@
 #include "integrators/gather_estimate.hpp"
 
 #include "integrators/gather_rays.hpp"
-#include "integrators/path_tracer.hpp"
+#include "integrators/light_source.hpp"
 #include "radiance/direct_light.hpp"
 
 namespace relumine {
@@ -26,7 +26,7 @@ struct GatherEstimate::GatherRay {
 
 GatherEstimate::GatherEstimate(const RenderSettings& settings, const Transport& transport, const View& view)
     : transport_(transport),
-      source_{transport, depth_limit(settings), source_depth(settings.radiance)},
+      source_(incident_source(settings, transport)),
       rays_(static_cast<std::uint32_t>(settings.gather_rays)),
       light_samples_(static_cast<std::uint32_t>(std::max(settings.light_samples, 0))),
       packets_(settings.gather_packets),

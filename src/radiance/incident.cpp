@@ -2,6 +2,9 @@
 // What gather rays bring back.
 #include "radiance/incident.hpp"
 
+#include "radiance/lobe_walk.hpp"
+#include "radiance/radiance_field.hpp"
+
 namespace relumine {
 namespace {
 
@@ -16,6 +19,19 @@ Spectrum emission_met(const Transport& t, PathState path, const SampleStream& st
     if (!may_emit(t, path.hit)) return {};
     const Vertex y = make_vertex(t, path, stream);  // attenuates its copy of the path
     return path.throughput * arriving_emission(t, path, &y.point);
+}
+
+/// What the surface at the path's hit reflects: the field's light by diffuse surfaces, found along lobes.
+Spectrum reflected_field(const IncidentRadiance& source, const PathState& path, std::uint32_t limit,
+                         const SampleStream& stream, RayCounts& counts) {
+    Spectrum known, found;
+    walk_lobes(source.transport, path, {limit}, stream, found, counts, [&](const DiffuseVertex& at) {
+        const SurfacePoint& p = at.vertex.point;
+        const auto irradiance = source.field->irradiance(p.position, p.geometric_normal, p.frame.n);
+        if (irradiance) known += at.weight * *irradiance * inv_pi;
+        return irradiance.has_value();
+    });
+    return known + found;
 }
 
 }  // namespace
@@ -40,6 +56,12 @@ RadiancePacket incident_radiance(const IncidentRadiance& source, const std::arra
         paths[i].alive = hits[i] && depth < limit;
     }
     if (depth >= limit) return sums;
+    if (source.field) {
+        for (std::size_t i = 0; i < packet_size; ++i)
+            if (paths[i].alive)
+                sums[i].indirect = reflected_field(source, paths[i], limit, streams[i], counts);
+        return sums;
+    }
     RadiancePacket reflected;
     path_radiance(source.transport, {&paths, 1}, limit, {&streams, 1}, {&reflected, 1}, counts);
     for (std::size_t i = 0; i < packet_size; ++i) sums[i].indirect = reflected[i].total();

@@ -13,6 +13,7 @@ struct IncidentRadiance {
     const Transport& transport;
     std::uint32_t max_depth = unlimited_depth;     // scattering vertices of a whole path
     std::uint32_t source_depth = unlimited_depth;  // those among them behind the gather ray
+    const RadianceField* field = nullptr;  // asked for what surfaces reflect, instead of following paths
 
     /// Whether surfaces that the rays hit reflect anything: false for the source `emission`.
     [[nodiscard]] bool reflects() const { return source_depth > 0; }

@@ -9,6 +9,8 @@
 
 namespace relumine {
 
+class RadianceField;
+
 /// The scene as light sees it. All references outlive the value.
 struct Transport {
     const SceneData& scene;
@@ -16,6 +18,7 @@ struct Transport {
     const LightSampler& lights;
     const UniformBsdfs& uniform_bsdfs;
     Masking masking = Masking::correlated;
+    const RadianceField* field = nullptr;  // light on surfaces, where a method has asked for it
 };
 
 /// A surface point with its BSDF, seen along `w_out`.

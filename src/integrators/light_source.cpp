@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light sources of gather rays.
+#include "integrators/light_source.hpp"
+
+#include "base/executor.hpp"
+#include "integrators/path_tracer.hpp"
+#include "integrators/shading_point.hpp"
+
+namespace relumine {
+namespace {
+
+/// Places along each side of the full frame from which the field is begun.
+int seeds_along(const View& view) { return std::clamp(std::max(view.width, view.height) / 8, 8, 40); }
+
+/// A camera sample in the middle of one of the frame's parts.
+CameraSample seed_sample(const View& view, const Tracer& tracer, int column, int row) {
+    CameraSample s;
+    const auto at = [&](int i, int pixels) {
+        return (static_cast<float>(i) + 0.5f) / static_cast<float>(seeds_along(view)) * static_cast<float>(pixels);
+    };
+    const Vec2 pixel{at(column, view.width), at(row, view.height)};
+    s.x = static_cast<int>(pixel.x);
+    s.y = static_cast<int>(pixel.y);
+    s.stream = pixel_stream(hash(view.seed, 0x6669656c64), column, row, 0, 1, PointSet::sobol);
+    s.path.ray = view.camera.through(pixel);
+    s.path.ray.opacity_seed = s.stream.bits(Dim::opacity);
+    s.path.hit = tracer.closest_hit(s.path.ray);
+    return s;
+}
+
+void add_seeds(const Transport& t, const CameraSample& sample, std::uint32_t max_depth, std::vector<FieldSeed>& seeds,
+               RayCounts& rays) {
+    Spectrum emission;
+    const auto x = follow_prefix(t, sample, max_depth, emission, rays);
+    if (!x) return;
+    const SurfacePoint& p = x->vertex.point;
+    seeds.push_back({p.position, p.geometric_normal, p.offset});
+    if (std::holds_alternative<RoughDielectric>(x->vertex.bsdf))
+        seeds.push_back({p.position, -p.geometric_normal, p.offset});
+}
+
+}  // namespace
+
+IncidentRadiance incident_source(const RenderSettings& settings, const Transport& transport) {
+    const bool exact = settings.method == "cache" && settings.unbiased;
+    return {transport, depth_limit(settings), source_depth(settings.radiance), exact ? nullptr : transport.field};
+}
+
+bool wants_field(const RenderSettings& settings) {
+    if (settings.method == "path" || (settings.max_depth >= 0 && settings.max_depth < 2)) return false;
+    return settings.radiance == "radiosity" || settings.radiance == "auto";
+}
+
+std::unique_ptr<RadianceField> make_field(const RenderSettings& settings, const Transport& transport,
+                                          const View& view, const std::function<bool()>& stop, RayCounts& rays) {
+    const FlushDenormals flush;
+    std::vector<FieldSeed> seeds;
+    for (int row = 0; row < seeds_along(view); ++row)
+        for (int column = 0; column < seeds_along(view); ++column) {
+            rays.add(RayPurpose::camera);
+            add_seeds(transport, seed_sample(view, transport.tracer, column, row), depth_limit(settings), seeds, rays);
+        }
+    FieldSettings field;
+    field.seed = settings.seed;
+    field.threads = resolve_threads(settings.threads);
+    field.stop = stop;
+    if (settings.max_depth >= 0) field.bounces = static_cast<std::uint32_t>(std::max(settings.max_depth - 2, 0));
+    return std::make_unique<RadianceField>(transport, seeds, field, rays);
+}
+
+}  // namespace relumine

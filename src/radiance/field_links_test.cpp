@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light over links: geometric series, and what packing costs.
+#include "radiance/field_links.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/hash.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr int rays = 128;
+
+/// Two elements that see nothing but each other, of this albedo.
+FieldLinks facing(Spectrum albedo) {
+    FieldLinks links;
+    for (ElementId e = 0; e < 2; ++e) {
+        for (std::uint16_t r = 0; r < rays; ++r) links.links.push_back(make_link(1 - e, r, r, albedo));
+        links.end_element();
+    }
+    return links;
+}
+
+TEST(FieldLinks, ReflectionsAddUpToTheGeometricSeries) {  // E = 1 / (1 − ρ), within 0.1 %
+    for (const float albedo : {0.3f, 0.6f, 0.9f}) {
+        const FieldLinks links = facing(Spectrum{albedo});
+        const std::vector<Spectrum> light(2, Spectrum{1});
+        std::vector<Spectrum> irradiance;
+        iterate(links, light, 1.0f / rays, 0xffffffffu, 1, irradiance);
+        for (const Spectrum& e : irradiance) EXPECT_NEAR(e.g * (1 - albedo), 1, 1e-3f) << albedo;
+    }
+}
+
+TEST(FieldLinks, AFewReflectionsAreItsPartialSum) {
+    const FieldLinks links = facing(Spectrum{0.5f});
+    const std::vector<Spectrum> light{Spectrum{1}, Spectrum{0}};
+    std::vector<Spectrum> irradiance;
+    EXPECT_EQ(iterate(links, light, 1.0f / rays, 0, 1, irradiance), 0u);
+    EXPECT_EQ(irradiance[1], Spectrum{0});
+    EXPECT_EQ(iterate(links, light, 1.0f / rays, 2, 1, irradiance), 2u);
+    EXPECT_NEAR(irradiance[0].g, 1.25f, 1e-3f);
+    EXPECT_NEAR(irradiance[1].g, 0.5f, 1e-3f);
+}
+
+TEST(FieldLinks, ThreadsDoNotMatter) {
+    const FieldLinks links = facing({0.9f, 0.5f, 0.1f});
+    const std::vector<Spectrum> light{Spectrum{1}, Spectrum{3}};
+    std::vector<Spectrum> one, seven;
+    iterate(links, light, 1.0f / rays, 50, 1, one);
+    iterate(links, light, 1.0f / rays, 50, 7, seven);
+    EXPECT_EQ(one, seven);
+}
+
+TEST(FieldLinks, RoundingIsFairOnAverage) {
+    for (const float value : {0.1234f, 0.77777f, 5.4321f}) {
+        double sum = 0;
+        constexpr int count = 20'000;
+        for (int i = 0; i < count; ++i)
+            sum += double{make_link(static_cast<ElementId>(i), 3, 5, Spectrum{value}).value().r};
+        EXPECT_NEAR(sum / count, value, 3e-5);
+    }
+}
+
+TEST(FieldLinks, DirectionsSurvivePacking) {
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        const auto number = [&](std::uint64_t what) {
+            return unit_float(static_cast<std::uint32_t>(hash(i, what)));
+        };
+        const Vec3 w = normalize({2 * number(1) - 1, 2 * number(2) - 1, 0.5f + number(3)});
+        EXPECT_GT(dot(unpack_direction(pack_direction({w})).v, w), 0.9998f);
+    }
+}
+
+}  // namespace
+}  // namespace relumine

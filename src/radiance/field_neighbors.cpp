@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finding neighbours, and weighing them.
+#include "radiance/field_neighbors.hpp"
+
+#include <mutex>
+
+#include "base/executor.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr float least_cosine = 0.9f;
+constexpr float most_height = 0.25f;  // off each other's planes, of the size
+constexpr float reach = 2;            // of the larger one's size
+constexpr float lift = 0.05f;         // of the ray that asks for the way, of the size
+constexpr float own_weight = 1e-4f;   // so that there is always some
+/// What a first-order irradiance vector is trusted with, of the irradiance that was measured.
+constexpr float most_tilted = 2;
+constexpr std::size_t run = 256;      // elements of a piece of work
+
+struct Candidate {
+    float distance2;
+    ElementId id;
+};
+
+/// Whether two pieces of surface, though not equally large, are parts of one.
+bool belong_together(const FieldElement& a, const FieldElement& b) {
+    const Vec3 way = b.position - a.position;
+    const float size = std::max(a.size, b.size);
+    return dot(a.normal, b.normal) >= least_cosine && length_squared(way) <= sqr(reach * size)
+           && std::abs(dot(way, a.normal)) <= most_height * size
+           && std::abs(dot(way, b.normal)) <= most_height * size;
+}
+
+bool sees(const Transport& t, const FieldElement& a, const FieldElement& b, RayCounts& rays) {
+    const Vec3 from = a.position + a.normal * (a.offset + lift * a.size);
+    const Vec3 way = b.position + b.normal * (b.offset + lift * b.size) - from;
+    const float distance = length(way);
+    if (!(distance > 0)) return true;
+    rays.add(RayPurpose::field);
+    return !t.tracer.occluded({from, {way / distance}, distance, 0});
+}
+
+FieldNeighbors::List find_neighbors(const Transport& t, const FieldCells& cells, ElementId id,
+                                    RayCounts& rays) {
+    const FieldElement& e = cells.elements()[id];
+    std::vector<Candidate> candidates;
+    for (int level = e.level - 2; level <= e.level + 2; ++level)
+        cells.around(e.position, level, [&](ElementId other) {
+            if (other == id || !belong_together(e, cells.elements()[other])) return;
+            candidates.push_back({length_squared(cells.elements()[other].position - e.position), other});
+        });
+    std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
+        return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : a.id < b.id;
+    });
+    FieldNeighbors::List list;
+    list.fill(no_element);
+    std::size_t count = 0;
+    for (const Candidate& c : candidates) {
+        if (count == list.size()) break;
+        if (sees(t, e, cells.elements()[c.id], rays)) list[count++] = c.id;
+    }
+    return list;
+}
+
+/// 1 at the element, 0 from its size on along any axis of the world; a partition of unity where elements lie on
+/// a grid.
+float tent(const FieldElement& e, Vec3 position) {
+    Vec3 way = position - e.position;
+    way = (way - e.normal * dot(way, e.normal)) / e.size;
+    const float x = 1 - std::abs(way.x), y = 1 - std::abs(way.y), z = 1 - std::abs(way.z);
+    return x > 0 && y > 0 && z > 0 ? x * y * z : 0.0f;
+}
+
+}  // namespace
+
+FieldNeighbors::FieldNeighbors(const Transport& t, const FieldCells& cells, int threads, RayCounts& rays)
+    : lists_(cells.elements().size()) {
+    std::mutex mutex;
+    parallel_for(threads, (lists_.size() + run - 1) / run, [&](std::size_t i) {
+        RayCounts counts;
+        for (std::size_t e = i * run; e < std::min((i + 1) * run, lists_.size()); ++e)
+            lists_[e] = find_neighbors(t, cells, static_cast<ElementId>(e), counts);
+        const std::lock_guard lock(mutex);
+        rays.add(counts);
+    });
+}
+
+Spectrum FieldNeighbors::irradiance(const FieldCells& cells, ElementId home, Vec3 position, Vec3 normal) const {
+    Spectrum tilted, straight;
+    float weights = 0;
+    const auto add = [&](const FieldElement& e, float weight) {
+        const Spectrum measured = e.irradiance.towards(e.normal);
+        weights += weight;
+        straight += measured * weight;
+        // What the element's vector says of directions along its plane; light from everywhere knows no tilt.
+        tilted += (e.irradiance.towards(normal) + measured * (1 - dot(normal, e.normal))) * weight;
+    };
+    add(cells.elements()[home], tent(cells.elements()[home], position) + own_weight);
+    for (const ElementId id : lists_[home]) {
+        if (id == no_element) break;
+        const float weight = tent(cells.elements()[id], position);
+        if (weight > 0) add(cells.elements()[id], weight);
+    }
+    const auto limited = [&](float x, float measured) {
+        return std::clamp(x, 0.0f, most_tilted * std::max(measured, 0.0f));
+    };
+    return Spectrum{limited(tilted.r, straight.r), limited(tilted.g, straight.g), limited(tilted.b, straight.b)}
+           * (1 / weights);
+}
+
+}  // namespace relumine

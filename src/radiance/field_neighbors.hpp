@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which elements of a radiance field a point between them is interpolated from.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/ray_counts.hpp"
+#include "radiance/field_cells.hpp"
+#include "radiance/transport.hpp"
+
+namespace relumine {
+
+/// For every element the nearest ones that lie in its plane and that it sees.
+class FieldNeighbors {
+  public:
+    static constexpr std::size_t most = 12;
+    using List = std::array<ElementId, most>;  // nearest first; ends with no_element
+
+    FieldNeighbors() = default;
+    FieldNeighbors(const Transport& t, const FieldCells& cells, int threads, RayCounts& rays);
+
+    /// Irradiance on a surface of this (shading) normal at a point for which `home` stands, by tents as large as the
+    /// elements.
+    [[nodiscard]] Spectrum irradiance(const FieldCells& cells, ElementId home, Vec3 position, Vec3 normal) const;
+
+    [[nodiscard]] const List& of(ElementId element) const { return lists_[element]; }
+    [[nodiscard]] std::size_t bytes() const { return lists_.capacity() * sizeof(List); }
+
+  private:
+    std::vector<List> lists_;
+};
+
+}  // namespace relumine

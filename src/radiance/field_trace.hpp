@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the elements of a radiance field see: links to other elements, and light.
+#pragma once
+
+#include "base/ray_counts.hpp"
+#include "radiance/bright_cones.hpp"
+#include "radiance/field_cells.hpp"
+#include "radiance/path.hpp"
+#include "radiance/radiance_field.hpp"
+
+namespace relumine {
+
+/// Where a ray's light comes from a surface that reflects diffusely.
+struct Landing {
+    Vec3 position, normal;  // geometric, on the side that was met
+    float offset = 0;
+    float distance = 0;   // metres, to the first surface that the ray has met
+    Spectrum throughput;  // from the irradiance there, over π, to the radiance of the ray
+    Vec3 direction;       // unit: of the ray, turned as the surface where it starts is turned from the element
+    std::uint16_t ray = 0;
+};
+
+/// What an element's rays have found.
+struct ElementView {
+    std::vector<Landing> landings;       // in order of rays
+    IrradianceVector light;              // what arrives straight from lights or through lobes alone
+    float distance = infinity;           // metres, the geometric mean of what is seen
+};
+
+/// The random numbers of a ray.
+[[nodiscard]] SampleStream element_stream(std::uint64_t seed, ElementId element, std::uint32_t ray, int rays);
+
+/// Adds light from `direction` that gives `irradiance` on the surface of this normal.
+void add_arriving(IrradianceVector& vector, Vec3 normal, Vec3 direction, Spectrum irradiance);
+
+/// A place where rays of an element start.
+struct StartPoint {
+    Vec3 position, normal;
+    float offset = 0;
+};
+
+/// Points spread over what an element's cell holds of its surface; at least the element's own.
+[[nodiscard]] std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id,
+                                                   std::uint64_t seed, RayCounts& rays);
+
+/// Moves an element towards the middle of what its cell holds of the surface, as far as it sees the way.
+void center(const Transport& t, const FieldCells& cells, FieldElement& element, RayCounts& rays);
+
+/// Traces rays over the hemispheres of `points` and samples the lights from there, for an element of this normal.
+[[nodiscard]] ElementView trace_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
+                                        ElementId id, const FieldSettings& settings, RayCounts& rays);
+
+/// Rays towards bright elements besides: what cosine-distributed rays seldom meet. The two are weighed by the
+/// balance heuristic [Veach97].
+struct GuidedView {
+    std::vector<float> share;       // by ray of trace_element: its weight, now that there are others
+    std::vector<Landing> landings;  // of the others, weighed; their rays count from settings.rays on
+};
+[[nodiscard]] GuidedView guide_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
+                                       const BrightCones& cones, ElementId id, const FieldSettings& settings,
+                                       RayCounts& rays);
+
+}  // namespace relumine

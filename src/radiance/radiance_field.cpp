@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+// Building a radiance field, generation by generation, and asking it.
+#include "radiance/radiance_field.hpp"
+
+#include <mutex>
+
+#include "base/executor.hpp"
+#include "radiance/field_links.hpp"
+#include "radiance/field_trace.hpp"
+
+namespace relumine {
+namespace {
+
+constexpr std::uint32_t seed_rays = 16;     // that a seed traces each time
+constexpr std::uint32_t seed_rounds = 4;    // later ones find what cells were divided into
+constexpr std::size_t generation = 1024;    // elements whose rays are traced before their links are made
+
+constexpr float bright_factor = 4;          // radiosity of bright elements over the mean
+constexpr float least_bright_share = 0.1f;  // of all power, that is worth sampling apart
+constexpr float unknown_albedo = 0.5f;      // of elements that no ray has met
+
+float median(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+/// The box of the inner nine tenths along every axis.
+Bounds3 core_of(const std::vector<Landing>& landings) {
+    Bounds3 core;
+    Vec3 lower, upper;
+    const auto axis = [&](float Vec3::*x) {
+        std::vector<float> values;
+        for (const Landing& l : landings) values.push_back(l.position.*x);
+        std::ranges::sort(values);
+        lower.*x = values[values.size() / 20];
+        upper.*x = values[values.size() - 1 - values.size() / 20];
+    };
+    axis(&Vec3::x);
+    axis(&Vec3::y);
+    axis(&Vec3::z);
+    core.add(lower);
+    core.add(upper);
+    return core;
+}
+
+class FieldBuilder {
+  public:
+    FieldBuilder(const Transport& t, std::span<const FieldSeed> seeds, const FieldSettings& settings, RayCounts& rays)
+        : t_(t), seeds_(seeds), settings_(settings), counts_(rays) {}
+
+    FieldCells run(FieldFigures& figures, BrightCones& cones, float& mean_radiance) {
+        const std::vector<Landing> first = seed_landings(0);
+        FieldCells cells(scale_of(first));
+        cells_ = &cells;
+        for (std::uint32_t round = 0; round < seed_rounds && !stopped(); ++round) {
+            add(round == 0 ? first : seed_landings(round));
+            close();
+        }
+        while (links_.first.size() <= cells.elements().size()) links_.end_element();  // a stopped build
+        figures.iterations = reflect();
+        find_bright();
+        if (!cones_.empty() && settings_.guided_rays > 0 && !stopped()) {
+            guide();
+            figures.iterations = reflect();
+        }
+        add_links_to_vectors();
+        figures.elements = cells.elements().size();
+        figures.links = links_.links.size();
+        figures.unresolved = static_cast<double>(unresolved_) / std::max<double>(1, static_cast<double>(links_.links.size() + unresolved_));
+        cones = std::move(cones_);
+        mean_radiance = mean_radiance_;
+        return cells;
+    }
+
+  private:
+    [[nodiscard]] bool stopped() const { return settings_.stop && settings_.stop(); }
+    [[nodiscard]] float share() const { return 1 / static_cast<float>(settings_.rays); }
+
+    /// Calls `work(i, counts)` for all i < count in parallel.
+    template <typename Work>
+    void in_parallel(std::size_t count, const Work& work) {
+        std::mutex mutex;
+        parallel_for(settings_.threads, count, [&](std::size_t i) {
+            RayCounts counts;
+            work(i, counts);
+            const std::lock_guard lock(mutex);
+            counts_.add(counts);
+        });
+    }
+
+    /// Where rays from the seeds land, in order of seeds.
+    std::vector<Landing> seed_landings(std::uint32_t round) {
+        std::vector<std::vector<Landing>> found(seeds_.size());
+        FieldSettings few = settings_;
+        few.rays = seed_rays;
+        few.light_samples = 0;
+        few.seed = hash(settings_.seed, 0x73656564, round);
+        in_parallel(seeds_.size(), [&](std::size_t i, RayCounts& counts) {
+            if (stopped()) return;
+            const StartPoint from{seeds_[i].position, seeds_[i].normal, seeds_[i].offset};
+            found[i] = trace_element(t_, from.normal, {&from, 1}, static_cast<ElementId>(i), few, counts).landings;
+        });
+        std::vector<Landing> all;
+        for (const auto& landings : found) all.insert(all.end(), landings.begin(), landings.end());
+        return all;
+    }
+
+    CellScale scale_of(const std::vector<Landing>& landings) const {
+        CellScale scale;
+        scale.finest = settings_.finest;
+        if (landings.empty()) return scale;
+        std::vector<float> distances;
+        for (const Landing& l : landings) distances.push_back(l.distance);
+        scale.size = std::max(settings_.cell * median(distances), 1e-6f * t_.scene.bounds.radius());
+        scale.core = core_of(landings);
+        return scale;
+    }
+
+    [[nodiscard]] bool full() const { return cells_->elements().size() >= settings_.most_elements; }
+
+    /// Where the camera's gather rays land, cells are fine.
+    void add(const std::vector<Landing>& landings) {
+        for (const Landing& l : landings)
+            if (!full()) (void)cells_->find_or_make_fine(l.position, l.normal, l.offset);
+    }
+
+    /// Traces elements in the order in which they were made, until no new ones are met.
+    void close() {
+        while (traced_ < cells_->elements().size() && !stopped()) {
+            const std::size_t count = std::min(generation, cells_->elements().size() - traced_);
+            std::vector<ElementView> views(count);
+            in_parallel(count, [&](std::size_t i, RayCounts& counts) {
+                const auto id = static_cast<ElementId>(traced_ + i);
+                FieldElement& element = cells_->elements()[id];
+                center(t_, *cells_, element, counts);
+                const std::vector<StartPoint> points = start_points(t_, *cells_, id, settings_.seed, counts);
+                views[i] = trace_element(t_, element.normal, points, id, settings_, counts);
+            });
+            for (const ElementView& view : views) link(view);
+        }
+    }
+
+    /// Links an element to where its rays have landed.
+    void add_links(FieldLinks& links, std::size_t from, const std::vector<Landing>& landings, bool may_make) {
+        const Frame frame = frame_around(cells_->elements()[from].normal);
+        for (const Landing& l : landings) {
+            const ElementId to = may_make && !full() ? cells_->find_or_make_coarse(l.position, l.normal, l.offset)
+                                                     : cells_->find(l.position, l.normal);
+            if (to != no_element)
+                links.links.push_back(make_link(to, l.ray, pack_direction(frame.to_local({l.direction})), l.throughput));
+            else
+                ++unresolved_;
+        }
+    }
+
+    /// Turns what the next element has seen into links.
+    void link(const ElementView& view) {
+        add_links(links_, traced_, view.landings, true);
+        links_.end_element();
+        FieldElement& element = cells_->elements()[traced_];
+        element.irradiance = view.light;
+        const int coarse = cells_->scale().coarsest_level(element.position);
+        element.divided = !element.coarse && element.size > settings_.divide_above * view.distance
+                          && element.level < coarse + cells_->scale().finest;
+        ++traced_;
+    }
+
+    std::size_t reflect() {
+        return iterate(links_, light_along_normals(), share(), settings_.bounces, settings_.threads, irradiance_);
+    }
+
+    /// Marks the few elements that reflect much more than others, if together they reflect much.
+    void find_bright() {
+        const std::vector<float> albedos = mean_albedos();
+        std::vector<float> radiosity;
+        double power = 0, area = 0, bright = 0;
+        std::vector<FieldElement>& elements = cells_->elements();
+        for (std::size_t i = 0; i < elements.size(); ++i) {
+            radiosity.push_back(std::max(0.0f, luminance(irradiance_[i]) * albedos[i]));
+            power += radiosity[i] * sqr(elements[i].size);
+            area += sqr(elements[i].size);
+        }
+        mean_radiance_ = area > 0 ? static_cast<float>(power / area) * inv_pi : 0;
+        const auto is_bright = [&](std::size_t i) { 
+            return !elements[i].coarse && radiosity[i] * area > bright_factor * power;
+        };
+        for (std::size_t i = 0; i < elements.size(); ++i)
+            if (is_bright(i)) bright += radiosity[i] * sqr(elements[i].size);
+        if (!(bright > least_bright_share * power)) return;
+        for (std::size_t i = 0; i < elements.size(); ++i) elements[i].bright = is_bright(i);
+        cones_ = BrightCones(*cells_, radiosity);
+    }
+
+    /// Of what rays have met of each element.
+    [[nodiscard]] std::vector<float> mean_albedos() const {
+        std::vector<float> sums(cells_->elements().size()), counts(sums.size());
+        for (const Link& l : links_.links) {
+            sums[l.to] += luminance(l.value());
+            counts[l.to] += 1;
+        }
+        for (std::size_t i = 0; i < sums.size(); ++i)
+            sums[i] = counts[i] > 0 ? sums[i] / counts[i] : unknown_albedo;
+        return sums;
+    }
+
+    /// Gives all elements rays towards the bright ones.
+    void guide() {
+        FieldLinks guided;
+        const std::size_t all = cells_->elements().size();
+        for (std::size_t first = 0; first < all; first += generation) {
+            const std::size_t count = std::min(generation, all - first);
+            std::vector<GuidedView> views(count);
+            in_parallel(count, [&](std::size_t i, RayCounts& counts) {
+                const auto id = static_cast<ElementId>(first + i);
+                const std::vector<StartPoint> points = start_points(t_, *cells_, id, settings_.seed, counts);
+                views[i] = guide_element(t_, cells_->elements()[id].normal, points, cones_, id, settings_, counts);
+            });
+            for (std::size_t i = 0; i < count; ++i) {
+                for (const Link& l : links_.of(first + i))
+                    guided.links.push_back(make_link(l.to, l.ray, l.direction, l.value() * views[i].share[l.ray]));
+                add_links(guided, first + i, views[i].landings, false);
+                guided.end_element();
+            }
+        }
+        links_ = std::move(guided);
+    }
+
+    [[nodiscard]] std::vector<Spectrum> light_along_normals() const {
+        std::vector<Spectrum> light;
+        for (const FieldElement& e : cells_->elements()) light.push_back(e.irradiance.towards(e.normal));
+        return light;
+    }
+
+    /// Gives every element's vector the light that arrives along its links.
+    void add_links_to_vectors() {
+        in_parallel(cells_->elements().size(), [&](std::size_t i, RayCounts&) {
+            FieldElement& e = cells_->elements()[i];
+            const Frame frame = frame_around(e.normal);
+            const Spectrum light = e.irradiance.towards(e.normal);
+            Spectrum linked;
+            IrradianceVector vector;
+            for (const Link& l : links_.of(i)) {
+                const Spectrum arriving = l.value() * irradiance_[l.to] * share();
+                add_arriving(vector, e.normal, frame.to_world(unpack_direction(l.direction)).v, arriving);
+                linked += arriving;
+            }
+            // The iterations' sum along the normal, the links' shape around it.
+            const Spectrum rest = irradiance_[i] - light - linked;
+            vector.add(e.normal, rest);
+            e.irradiance.x += vector.x;
+            e.irradiance.y += vector.y;
+            e.irradiance.z += vector.z;
+        });
+    }
+
+    const Transport& t_;
+    std::span<const FieldSeed> seeds_;
+    const FieldSettings& settings_;
+    RayCounts& counts_;
+    FieldCells* cells_ = nullptr;
+    FieldLinks links_;
+    BrightCones cones_;
+    float mean_radiance_ = 0;
+    std::vector<Spectrum> irradiance_;
+    std::size_t traced_ = 0, unresolved_ = 0;
+};
+
+}  // namespace
+
+RadianceField::RadianceField(const Transport& t, std::span<const FieldSeed> seeds, const FieldSettings& settings,
+                             RayCounts& rays)
+    : cells_(FieldBuilder(t, seeds, settings, rays).run(figures_, cones_, mean_radiance_)),
+      neighbors_(t, cells_, settings.threads, rays) {
+    figures_.bytes = cells_.bytes() + neighbors_.bytes();
+}
+
+bool RadianceField::is_bright(Vec3 position, Vec3 geometric_normal) const {
+    if (cones_.empty()) return false;
+    const ElementId home = cells_.find(position, geometric_normal);
+    return home != no_element && cells_.elements()[home].bright;
+}
+
+std::optional<Spectrum> RadianceField::irradiance(Vec3 position, Vec3 geometric_normal,
+                                                  Vec3 shading_normal) const {
+    const ElementId home = cells_.find(position, geometric_normal);
+    if (home == no_element) return {};
+    return neighbors_.irradiance(cells_, home, position, shading_normal);
+}
+
+}  // namespace relumine

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// The radiance field in pictures: rooms whose light is known, walls that let nothing through, agreement with
+// `path`.
+#include <gtest/gtest.h>
+
+#include "integrators/light_source.hpp"
+#include "render_setup.hpp"
+#include "tests/render_support.hpp"
+
+namespace relumine {
+namespace {
+
+using testing::mean_of;
+using testing::project_scene;
+
+using Point = std::array<float, 3>;
+
+void add_quad(SceneBuilder& builder, std::size_t material, const Point& a, const Point& b, const Point& c,
+              const Point& d) {
+    const std::array positions{a, b, c, d};
+    const std::array<std::array<std::uint32_t, 3>, 2> triangles{{{0, 1, 2}, {0, 2, 3}}};
+    MeshDescription mesh;
+    mesh.positions = positions;
+    mesh.triangles = triangles;
+    mesh.material = material;
+    builder.add_instance(builder.add_mesh(mesh));
+}
+
+/// Six quads of a material that face inwards.
+void add_room(SceneBuilder& builder, std::size_t material, const Point& lower, const Point& upper) {
+    const auto [x0, y0, z0] = lower;
+    const auto [x1, y1, z1] = upper;
+    add_quad(builder, material, {x0, y0, z0}, {x0, y0, z1}, {x1, y0, z1}, {x1, y0, z0});
+    add_quad(builder, material, {x0, y1, z0}, {x1, y1, z0}, {x1, y1, z1}, {x0, y1, z1});
+    add_quad(builder, material, {x0, y0, z0}, {x0, y1, z0}, {x0, y1, z1}, {x0, y0, z1});
+    add_quad(builder, material, {x1, y0, z0}, {x1, y0, z1}, {x1, y1, z1}, {x1, y1, z0});
+    add_quad(builder, material, {x0, y0, z0}, {x1, y0, z0}, {x1, y1, z0}, {x0, y1, z0});
+    add_quad(builder, material, {x0, y0, z1}, {x0, y1, z1}, {x1, y1, z1}, {x1, y0, z1});
+}
+
+MaterialDescription matte(float albedo, float emission = 0) {
+    MaterialDescription m;
+    m.base_color = {albedo, albedo, albedo};
+    m.specular = 0;
+    m.emission = {emission, emission, emission};
+    m.double_sided = true;
+    return m;
+}
+
+CameraDescription camera_at(double x, double y, double z) {
+    CameraDescription camera;
+    camera.world_from_camera = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1};
+    camera.vertical_fov = 1.4;
+    return camera;
+}
+
+RenderSettings small(const std::string& method) {
+    RenderSettings settings;
+    settings.method = method;
+    settings.radiance = "radiosity";
+    settings.width = settings.height = 32;
+    settings.samples_per_pixel = 16;
+    settings.gather_rays = 64;
+    return settings;
+}
+
+class Methods : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Radiosity, Methods, ::testing::Values("gather", "reproject", "cache", "block-gather"));
+
+TEST_P(Methods, ABrightRoomKeepsItsEnergy) {  // emission 1 − ρ, albedo ρ = .9: ten times the direct light
+    SceneBuilder builder;
+    add_room(builder, builder.add_material(matte(0.9f, 0.1f)), {-1, -1, -1}, {1, 1, 1});
+    builder.add_camera(camera_at(0, 0, 0.9));
+    EXPECT_NEAR(mean_of(render(builder.build(), small(GetParam()))), 1, 0.005);
+}
+
+TEST_P(Methods, TheGreySphereIsOne) {
+    EXPECT_NEAR(mean_of(render(project_scene("grey-sphere.glb"), small(GetParam()))), 1, 0.006);
+}
+
+TEST(Radiosity, DepthCounts) {  // emission ½, albedo ½: ½ + ¼ + …
+    RenderSettings settings = small("gather");
+    for (int depth = 0; depth < 5; ++depth) {
+        settings.max_depth = depth;
+        EXPECT_NEAR(mean_of(render(project_scene("furnace-walls-50.glb"), settings)), 1 - std::pow(0.5, depth + 1),
+                    0.004)
+            << depth;
+    }
+}
+
+struct Room {
+    const char *scene, *environment;
+};
+class Rooms : public ::testing::TestWithParam<Room> {};
+INSTANTIATE_TEST_SUITE_P(Radiosity, Rooms,
+                         ::testing::Values(Room{"cornell.glb", ""}, Room{"cornell-glossy.glb", ""},
+                                           Room{"validation/room.glb", ""},
+                                           Room{"validation/open.glb", "validation/sky.pfm"}));
+
+/// Biased, so compared by size and not by significance: the picture's mean within 0.6 %. Without the bounces
+/// behind the first gather ray the means are off by 10 % and more.
+TEST_P(Rooms, TheMeanIsThatOfPath) {
+    const Scene scene = project_scene(GetParam().scene, GetParam().environment);
+    RenderSettings path = small("path"), gather = small("gather");
+    path.samples_per_pixel = 1024;
+    path.pixel_sampling = gather.pixel_sampling = "center";
+    gather.samples_per_pixel = 1;
+    gather.gather_rays = 1024;
+    gather.light_samples = 256;
+    EXPECT_NEAR(mean_of(render(scene, gather)) / mean_of(render(scene, path)), 1, 0.006);
+}
+
+/// A closed room cut in two by a wall of 1 cm; the light is on the left.
+TEST(Radiosity, AWallOfACentimetreLetsNothingThrough) {
+    SceneBuilder builder;
+    const std::size_t white = builder.add_material(matte(0.8f));
+    add_room(builder, white, {-2, 0, -2}, {2, 2, 2});
+    for (const float x : {-0.005f, 0.005f}) add_quad(builder, white, {x, 0, -2}, {x, 2, -2}, {x, 2, 2}, {x, 0, 2});
+    builder.add_light(PointLightDescription{{-1, 1.5f, 0}, {10, 10, 10}});
+    builder.add_camera(camera_at(-1, 1, 1.9));
+    const Scene scene = builder.build();
+    const RenderSettings settings = small("gather");
+    RenderSetup setup(scene.data(), settings, find_framing(scene.data(), settings), [](const char*) {});
+    // Places on both sides: a camera never sees both.
+    std::vector<FieldSeed> seeds;
+    for (int i = 0; i < 400; ++i) {
+        const float x = (i % 2 == 0 ? 1.0f : -1.0f) * (0.1f + 1.8f * static_cast<float>(i / 2 % 14) / 14);
+        seeds.push_back({{x, 0, -1.9f + 3.8f * static_cast<float>(i / 28) / 15}, {0, 1, 0}, 1e-5f});
+    }
+    FieldSettings field_settings;
+    RayCounts rays;
+    const RadianceField field(setup.transport, seeds, field_settings, rays);
+    double lit = 0;
+    for (float x = 0.006f; x < 1.9f; x += 0.013f)
+        for (float z = -1.9f; z < 1.9f; z += 0.31f) {
+            const auto dark = field.irradiance({x, 0, z}, {0, 1, 0}, {0, 1, 0});
+            const auto bright = field.irradiance({-x, 0, z}, {0, 1, 0}, {0, 1, 0});
+            if (bright) lit = std::max(lit, double{bright->g});
+            if (dark && x > 0.03f) {  // a cell at the wall's foot may reach under it
+                EXPECT_LT(dark->g, 1e-3) << x << " " << z;
+            }
+        }
+    EXPECT_GT(lit, 1);
+    for (float y = 0.05f; y < 2; y += 0.1f) {
+        const auto dark = field.irradiance({0.005f, y, 0.1f}, {1, 0, 0}, {1, 0, 0});
+        ASSERT_TRUE(dark.has_value());
+        EXPECT_LT(dark->g, 1e-3) << y;
+    }
+}
+
+}  // namespace
+}  // namespace relumine
