@@ -78,6 +78,8 @@ class MapTracer {
     void put(std::size_t lane, const Hit& hit, SplitRadiance found) {
         const MapRay& ray = queue_[lane];
         if (!is_black(found.direct)) found.direct *= 1 - source_.split.of_emission(rays_[lane], hit).share;
+        if (!is_black(found.indirect) && source_.split.reflects_brightly(rays_[lane], hit))
+            found.indirect = {};
         if (!is_finite(found.total())) {
             ++counts_.non_finite;
             found = {};

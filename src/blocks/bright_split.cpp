@@ -2,12 +2,21 @@
 // Splitting light.
 #include "blocks/bright_split.hpp"
 
-namespace relumine {
+#include "radiance/radiance_field.hpp"
 
-BrightSplit::BrightSplit(const SceneData& scene, float factor)
+namespace relumine {
+namespace {
+
+/// Emitters are bright where they exceed what surfaces reflect so many times.
+constexpr float local_factor = 4;
+
+}  // namespace
+
+BrightSplit::BrightSplit(const SceneData& scene, float factor, const RadianceField* field)
     : scene_(scene),
+      field_(field),
       threshold_(bright_threshold(scene, factor)),
-      lights_(scene, {threshold_, false, false}) {}
+      lights_(scene, {threshold_, false, false, field ? local_factor * field->mean_radiance() : infinity}) {}
 
 /// What rises over the threshold, so that the dim part stays continuous at the rim of a sun.
 float BrightSplit::excess(Spectrum radiance) const {
@@ -25,6 +34,17 @@ BrightSplit::Part BrightSplit::of_environment(WorldDir direction, Spectrum radia
 BrightSplit::Part BrightSplit::of_emission(const Ray& ray, const Hit& hit) const {
     const float pdf = lights_.pdf(ray.origin, surface_point(scene_, hit, -ray.direction));
     return pdf > 0 ? Part{1, pdf} : Part{};
+}
+
+bool BrightSplit::reflects_brightly(const Ray& ray, const Hit& hit) const {
+    if (cones().empty()) return false;
+    const SurfacePoint p = surface_point(scene_, hit, -ray.direction);
+    return field_->is_bright(p.position, p.geometric_normal);
+}
+
+const BrightCones& BrightSplit::cones() const {
+    static const BrightCones none;
+    return field_ ? field_->bright_cones() : none;
 }
 
 }  // namespace relumine

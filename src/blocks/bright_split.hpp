@@ -2,6 +2,7 @@
 // The bright part of the light: suns, lamps and bright emitters are sampled, the rest is kept in maps.
 #pragma once
 
+#include "radiance/bright_cones.hpp"
 #include "radiance/transport.hpp"
 
 namespace relumine {
@@ -11,7 +12,8 @@ namespace relumine {
 class BrightSplit {
   public:
     /// Bright is what exceeds `factor` times the mean radiance of the environment; without one, all emitters.
-    BrightSplit(const SceneData& scene, float factor);
+    /// With a field, emitters that outshine the surfaces are bright as well, and so are its bright elements.
+    BrightSplit(const SceneData& scene, float factor, const RadianceField* field = nullptr);
 
     [[nodiscard]] const LightSampler& lights() const { return lights_; }
     /// Whether there is any.
@@ -31,10 +33,15 @@ class BrightSplit {
         return std::isfinite(light.distance) ? 1 : excess(light.radiance);
     }
 
+    /// Whether what the surface at `hit` reflects is sampled through `cones()`: all of it, then.
+    [[nodiscard]] bool reflects_brightly(const Ray& ray, const Hit& hit) const;
+    [[nodiscard]] const BrightCones& cones() const;
+
   private:
     [[nodiscard]] float excess(Spectrum radiance) const;
 
     const SceneData& scene_;
+    const RadianceField* field_;
     float threshold_;
     LightSampler lights_;
 };

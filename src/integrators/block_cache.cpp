@@ -11,6 +11,7 @@
 #include "blocks/dim_environment.hpp"
 #include "integrators/cache_plan.hpp"
 #include "integrators/gather_estimate.hpp"
+#include "integrators/light_source.hpp"
 #include "integrators/lit_sample.hpp"
 #include "integrators/path_tracer.hpp"
 #include "integrators/residual_filter.hpp"
@@ -65,12 +66,14 @@ class BlockCache final : public Integrator {
           surface_layers_(surface_layers),
           plan_(plan),
           max_depth_(depth_limit(settings)),
-          source_{transport, max_depth_, source_depth(settings.radiance)},
+          source_(incident_source(settings, transport)),
+          map_source_(source_),
           monte_carlo_(settings, transport, view),
-          split_(transport.scene, bright_factor),
+          split_(transport.scene, bright_factor, plan.rays.light > 0 ? transport.field : nullptr),
           grid_(grid_side),
           points_(grid_),
           environment_(transport, split_, grid_, resolve_threads(settings.threads)) {
+        map_source_.field = transport.field;  // maps may err: residual rays know
         plan_.blocks.level = least_level * environment_.luminance;
     }
 
@@ -132,7 +135,7 @@ class BlockCache final : public Integrator {
         row.maps.resize(static_cast<std::size_t>((row.rect.width() + cell_pixels - 1) / cell_pixels));
         BlockSettings blocks = plan_.blocks;
         blocks.samples_per_pixel = static_cast<int>(p.sample_count);
-        const MapSource source{source_, split_, grid_, environment_};
+        const MapSource source{map_source_, split_, grid_, environment_};
         std::mutex mutex;
         parallel_for(p.threads, row.maps.size(), [&](std::size_t i) {
             RayCounts rays;
@@ -331,7 +334,7 @@ class BlockCache final : public Integrator {
     bool surface_layers_;
     CachePlan plan_;
     std::uint32_t max_depth_;
-    IncidentRadiance source_;
+    IncidentRadiance source_, map_source_;  // the truth, or what stands for it; what maps hold
     GatherEstimate monte_carlo_;
     BrightSplit split_;
     DirectionGrid grid_;

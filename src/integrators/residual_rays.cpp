@@ -3,10 +3,11 @@
 //
 //     Lo = H + Σ (f − h) / (n p) + Σ w f_bright / (b r) + Σ w f_bright / (m q)
 //
-// over n residual rays of density p, of which b have density r, and m light samples of density q. f,
-// f_bright: dim and bright radiance times BSDF; h, H: the integrand in the maps and its integral; w: the
-// power heuristic [Veach97, §9.2.4] between light samples and those residual rays that were drawn from the
-// BSDF: the others know nothing of bright light.
+// over n residual rays of density p, of which b have density r, and m light samples of density q (towards
+// lights, and towards surfaces that reflect as much as lights: BrightCones). f, f_bright: dim and bright
+// radiance times BSDF; h, H: the integrand in the maps and its integral; w: the power heuristic [Veach97,
+// §9.2.4] between light samples and those residual rays that were drawn from the BSDF: the others know
+// nothing of bright light.
 #include "integrators/residual_rays.hpp"
 
 #include "base/hash.hpp"
@@ -19,7 +20,8 @@ namespace {
 /// Share of the residual rays that is drawn from the BSDF, so that no direction is left out.
 constexpr float usual_bsdf_share = 0.15f;
 
-constexpr std::uint64_t residual_purpose = 0x7265736964, light_purpose = 0x6272696768;
+constexpr std::uint64_t residual_purpose = 0x7265736964, light_purpose = 0x6272696768,
+                        cone_purpose = 0x636f6e65;
 
 float bsdf_share(const ResidualDistribution& distribution) {
     return distribution.empty() ? 1 : usual_bsdf_share;
@@ -49,23 +51,39 @@ BsdfValue value_towards(const Vertex& vertex, WorldDir direction) {
 
 }  // namespace
 
+/// The bright surfaces as the point sees them, and how light samples are divided between them and the lights.
+void ResidualEstimator::see_cones(const IntegratedPoint& point) {
+    const SurfacePoint& p = point.x.vertex.point;
+    cones_.count = 0;
+    if (!settings_.split.cones().empty() && settings_.source.max_depth > point.x.path.depth + 1)
+        cones_ = settings_.split.cones().seen_from(p.position, p.geometric_normal);
+    const bool lights = !settings_.split.empty(), cones = cones_.count > 0;
+    light_budget_ = settings_.budget.light * (!lights ? 0.0f : cones ? 0.5f : 1.0f);
+    cone_budget_ = settings_.budget.light - light_budget_;
+    if (!cones) cone_budget_ = 0;
+}
+
 void ResidualEstimator::add(const IntegratedPoint& point, SampledRadiance& sum) {
     const auto each = [&](float rays, std::uint64_t purpose, const auto& use) {
         const RayRange range = ray_range(rays, point.stream, purpose);
         for (std::uint32_t i = range.first; i < range.last; ++i)
             use(SampleStream{hash(point.stream.key, purpose), i, range.all, point.stream.set});
     };
+    see_cones(point);
     if (settings_.budget.residual > 0)
         each(settings_.budget.residual, residual_purpose,
              [&](const SampleStream& stream) { add_residual(point, stream, sum); });
-    if (settings_.budget.light > 0 && !settings_.split.empty())
-        each(settings_.budget.light, light_purpose,
+    if (light_budget_ > 0)
+        each(light_budget_, light_purpose,
              [&](const SampleStream& stream) { add_light(point, stream, sum); });
+    if (cone_budget_ > 0)
+        each(cone_budget_, cone_purpose, [&](const SampleStream& stream) { add_cone(point, stream, sum); });
 }
 
 void ResidualEstimator::finish() {
     trace_residual();
     trace_light();
+    trace_cones();
 }
 
 /// A direction from the deviations or from the BSDF.
@@ -101,9 +119,15 @@ void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleS
     const Spectrum h = settings_.exact ? point.scale * point.integral.bsdf_at(drawn->texel) : bsdf.value;
     const MapRadiance held = point.integral.radiance_at(drawn->texel);
     const std::size_t lane = residual_count_++;
-    residual_[lane] = {&sum,       drawn->texel,
-                       bsdf.value, {h * held.direct, h * held.indirect},
-                       density,    drawn->from_bsdf ? rays * share * bsdf.pdf : 0};
+    residual_[lane] = {
+        &sum,
+        drawn->texel,
+        bsdf.value,
+        {h * held.direct, h * held.indirect},
+        density,
+        drawn->from_bsdf ? rays * share * bsdf.pdf : 0,
+        drawn->from_bsdf && cone_budget_ > 0 ? cone_budget_ * pdf(cones_, drawn->direction) : 0,
+        light_budget_};
     residual_streams_[lane] = stream;
     residual_rays_[lane] = {ray_origin(vertex.point, drawn->direction), drawn->direction,
                             is_black(bsdf.value) ? -1 : infinity, stream.bits(Dim::opacity, 2 * depth + 2)};
@@ -137,10 +161,15 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
         true_dim ? found.direct * (1 - bright.share) : settings_.environment.texels[drawn.texel];
     SampledRadiance& sum = *drawn.sum;
     sum.residual.direct += (drawn.bsdf * dim - drawn.held.direct) / drawn.density;
-    sum.residual.indirect += (drawn.bsdf * found.indirect - drawn.held.indirect) / drawn.density;
+    const bool brightly = hit && !is_black(found.indirect) && settings_.split.reflects_brightly(ray, hit);
+    const Spectrum dim_indirect = brightly ? Spectrum{} : found.indirect;
+    sum.residual.indirect += (drawn.bsdf * dim_indirect - drawn.held.indirect) / drawn.density;
+    if (brightly && drawn.bsdf_density > 0)
+        sum.residual.indirect += drawn.bsdf * found.indirect
+                                 * (mis_weight(drawn.bsdf_density, drawn.cone_density) / drawn.bsdf_density);
     if (bright.share > 0 && drawn.bsdf_density > 0)
         sum.bright += drawn.bsdf * found.direct
-                      * (bright.share * mis_weight(drawn.bsdf_density, settings_.budget.light * bright.pdf)
+                      * (bright.share * mis_weight(drawn.bsdf_density, drawn.light_budget * bright.pdf)
                          / drawn.bsdf_density);
 }
 
@@ -154,7 +183,7 @@ void ResidualEstimator::add_light(const IntegratedPoint& point, const SampleStre
     const BsdfValue bsdf = value_towards(vertex, light->w_in);
     const Spectrum radiance = bsdf.value * light->radiance * settings_.split.share(*light);
     if (is_black(radiance)) return;
-    const float density = settings_.budget.light * light->pdf;
+    const float density = light_budget_ * light->pdf;
     const float bsdf_density = settings_.budget.residual * bsdf_share(point.distribution) * bsdf.pdf;
     light_[light_count_] = {&sum, radiance * (mis_weight(density, bsdf_density) / density)};
     light_rays_[light_count_++] = shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1));
@@ -170,6 +199,41 @@ void ResidualEstimator::trace_light() {
     for (std::size_t lane = 0; lane < light_count_; ++lane)
         if (!blocked[lane]) light_[lane].sum->bright += light_[lane].reflected;
     light_count_ = 0;
+}
+
+void ResidualEstimator::add_cone(const IntegratedPoint& point, const SampleStream& stream,
+                                 SampledRadiance& sum) {
+    const Vertex& vertex = point.x.vertex;
+    const std::uint32_t depth = point.x.path.depth;
+    const ConeSample drawn = sample(cones_, stream.next2(Dim::direction, depth));
+    const BsdfValue bsdf = value_towards(vertex, drawn.direction);
+    if (is_black(bsdf.value)) return;
+    if (cone_count_ > 0 && depth != cone_depth_) trace_cones();
+    cone_depth_ = depth;
+    const float density = cone_budget_ * drawn.pdf;
+    const float bsdf_density = settings_.budget.residual * bsdf_share(point.distribution) * bsdf.pdf;
+    cone_[cone_count_] = {&sum, bsdf.value * (mis_weight(density, bsdf_density) / density)};
+    cone_streams_[cone_count_] = stream;
+    cone_rays_[cone_count_++] = {ray_origin(vertex.point, drawn.direction), drawn.direction, infinity,
+                                 stream.bits(Dim::opacity, 2 * depth + 2)};
+    if (cone_count_ == packet_size) trace_cones();
+}
+
+void ResidualEstimator::trace_cones() {
+    if (cone_count_ == 0) return;
+    std::array<Hit, packet_size> hits;
+    for (std::size_t lane = cone_count_; lane < packet_size; ++lane) cone_rays_[lane].t_max = -1;
+    counts_.add(RayPurpose::residual, cone_count_);
+    settings_.source.transport.tracer.closest_hits(cone_rays_, hits, Coherence::incoherent);
+    for (std::size_t lane = 0; lane < cone_count_; ++lane)
+        if (!hits[lane] || !settings_.split.reflects_brightly(cone_rays_[lane], hits[lane]))
+            cone_rays_[lane].t_max = -1;
+    const RadiancePacket found =
+        incident_radiance(settings_.source, cone_rays_, hits, cone_depth_ + 1, cone_streams_, counts_);
+    for (std::size_t lane = 0; lane < cone_count_; ++lane)
+        if (cone_rays_[lane].t_max >= 0)
+            cone_[lane].sum->residual.indirect += cone_[lane].weight * found[lane].indirect;
+    cone_count_ = 0;
 }
 
 }  // namespace relumine

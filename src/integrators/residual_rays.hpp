@@ -60,10 +60,16 @@ class ResidualEstimator {
         MapRadiance held;        // the integrand in the maps
         float density = 0;       // of residual rays, times how many there are
         float bsdf_density = 0;  // of those drawn from the BSDF, likewise; 0 if this is none of them
+        float cone_density = 0;  // of rays towards bright surfaces
+        float light_budget = 0;  // rays of the point towards lights
     };
     struct LightRay {
         SampledRadiance* sum = nullptr;
         Spectrum reflected;  // where nothing is in the way
+    };
+    struct ConeRay {
+        SampledRadiance* sum = nullptr;
+        Spectrum weight;  // of the radiance that bright surfaces reflect
     };
     struct Drawn {
         WorldDir direction;
@@ -73,10 +79,13 @@ class ResidualEstimator {
 
     void add_residual(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
     void add_light(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
+    void add_cone(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
+    void see_cones(const IntegratedPoint& point);
     [[nodiscard]] static std::optional<Drawn> draw(const IntegratedPoint& point, const SampleStream& stream);
     void trace_residual();
     void collect(const ResidualRay& drawn, const Ray& ray, const Hit& hit, const SplitRadiance& found) const;
     void trace_light();
+    void trace_cones();
 
     const ResidualSettings& settings_;
     RayCounts& counts_;
@@ -84,8 +93,13 @@ class ResidualEstimator {
     std::array<ResidualRay, packet_size> residual_;
     std::array<LightRay, packet_size> light_;
     StreamPacket residual_streams_;
-    std::size_t residual_count_ = 0, light_count_ = 0;
-    std::uint32_t depth_ = 0;  // of the points whose residual rays wait
+    std::array<Ray, packet_size> cone_rays_;
+    std::array<ConeRay, packet_size> cone_;
+    StreamPacket cone_streams_;
+    BrightCones::Table cones_;                  // from the point that rays are drawn for
+    float light_budget_ = 0, cone_budget_ = 0;  // rays to lights and to bright surfaces, of RayBudget::light
+    std::size_t residual_count_ = 0, light_count_ = 0, cone_count_ = 0;
+    std::uint32_t depth_ = 0, cone_depth_ = 0;  // of the points whose rays wait
 };
 
 }  // namespace relumine

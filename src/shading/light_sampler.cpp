@@ -105,7 +105,8 @@ void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& 
                                          std::vector<double>& powers) {
     const Mesh& mesh = scene_.meshes[index(scene_.instances[i].mesh)];
     const Material& material = scene_.materials[index(mesh.material)];
-    if (mean_of_channels(material.emission) <= selection.threshold) return;
+    if (mean_of_channels(material.emission) <= std::min(selection.threshold, selection.most_local_threshold))
+        return;
     first_triangle_[i] = static_cast<std::uint32_t>(triangles_.size());
     const float winding =
         determinant(scene_.instances[i].world_from_object) < 0 && !scene_.instances[i].identity ? -1.0f

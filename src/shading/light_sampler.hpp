@@ -45,8 +45,9 @@ struct TrianglePointLanes {
 struct LightSelection {
     float threshold = 0;  // radiance (channels' mean) that light must exceed: the environment anywhere in a
                           // texel, emitters on average
-    bool delta_lights = true;        // point, spot and directional lights are among the choices
-    bool compensate_for_mis = true;  // lower the environment's density by its mean [Karlik19]
+    bool delta_lights = true;               // point, spot and directional lights are among the choices
+    bool compensate_for_mis = true;         // lower the environment's density by its mean [Karlik19]
+    float most_local_threshold = infinity;  // what local emitters must exceed, if less than `threshold`
 };
 
 /// Draws lights by power and points on them uniformly. Immutable.
