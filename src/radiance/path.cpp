@@ -42,7 +42,10 @@ Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stre
         vertex.bsdf = *uniform;
     } else {
         const float u = p.material->transmission > 0 ? stream.next1(Dim::blend, path.depth) : 0.0f;
-        vertex.bsdf = make_bsdf(t.scene, p, t.masking, u);
+        const Mesh& mesh = t.scene.meshes[index(t.scene.instances[p.instance].mesh)];
+        vertex.bsdf = t.tracer.has_panes() && pane_kind(t.scene, mesh) != Pane::none
+                          ? make_pane_bsdf(t.scene, path.hit, p, vertex.w_out, t.masking, u)
+                          : make_bsdf(t.scene, p, t.masking, u);
     }
     return vertex;
 }
@@ -51,6 +54,10 @@ void scatter_path(PathState& path, const Vertex& vertex, const SampleStream& str
     const BsdfRandom u{has_lobes(vertex.bsdf) ? stream.next1(Dim::lobe, path.depth) : 0.0f,
                        stream.next2(Dim::direction, path.depth)};
     scatter(path, vertex, u, stream.bits(Dim::opacity, 2 * path.depth + 2));
+}
+
+void tint(const Transport& t, PathState& path) {
+    if (t.tracer.has_coloured_panes()) path.throughput *= t.tracer.tint(path.ray, path.hit.t);
 }
 
 Spectrum arriving_emission(const Transport& t, const PathState& path, const SurfacePoint* hit_point) {
