@@ -137,9 +137,10 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
                 : settings_.split.of_environment(
                     ray.direction, coloured ? t.lights.environment_radiance(ray.direction) : found.direct);
     }
+    const Spectrum colour = !hit && t.tracer.has_coloured_panes() ? t.tracer.tint(ray, hit.t) : Spectrum{1};
     const bool true_dim = hit || settings_.exact || ray.t_max < 0;
-    const Spectrum dim = true_dim ? found.direct * (1 - bright.share)
-                                  : settings_.environment.texels[drawn.texel] * t.tracer.tint(ray, hit.t);
+    const Spectrum dim =
+        true_dim ? found.direct * (1 - bright.share) : settings_.environment.texels[drawn.texel] * colour;
     SampledRadiance& sum = *drawn.sum;
     sum.residual.direct += (drawn.bsdf * dim - drawn.held.direct) / drawn.density;
     sum.residual.indirect += (drawn.bsdf * found.indirect - drawn.held.indirect) / drawn.density;

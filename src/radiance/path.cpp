@@ -56,10 +56,6 @@ void scatter_path(PathState& path, const Vertex& vertex, const SampleStream& str
     scatter(path, vertex, u, stream.bits(Dim::opacity, 2 * path.depth + 2));
 }
 
-void tint(const Transport& t, PathState& path) {
-    if (t.tracer.has_coloured_panes()) path.throughput *= t.tracer.tint(path.ray, path.hit.t);
-}
-
 Spectrum arriving_emission(const Transport& t, const PathState& path, const SurfacePoint* hit_point) {
     const Spectrum emitted =
         hit_point ? emitted_radiance(t.scene, *hit_point) : t.lights.environment_radiance(path.ray.direction);

@@ -184,13 +184,12 @@ Tracer::Tracer(const SceneData& scene, OpacityFunction opacity, PaneModel panes)
     : impl_(std::make_unique<Impl>(scene, std::move(opacity), std::move(panes))) {
     const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, build_slots + 1);
     impl_->build();
+    asks_for_opacity_ = !impl_->filters.empty();
+    has_panes_ = impl_->has_panes;
+    has_coloured_panes_ = impl_->coloured_panes != nullptr;
 }
 
 Tracer::~Tracer() = default;
-
-bool Tracer::asks_for_opacity() const { return !impl_->filters.empty(); }
-bool Tracer::has_panes() const { return impl_->has_panes; }
-bool Tracer::has_coloured_panes() const { return impl_->coloured_panes != nullptr; }
 
 Hit Tracer::closest_hit(const Ray& ray) const {
     RTCRayHit query;
@@ -213,6 +212,7 @@ bool Tracer::occluded(const Ray& ray) const {
 }
 
 Spectrum Tracer::passed_light(const Ray& ray) const {
+    if (!has_panes_) return Spectrum{occluded(ray) ? 0.0f : 1.0f};
     RTCRay query;
     set_ray(query, ray);
     PassedLight light;
@@ -222,7 +222,7 @@ Spectrum Tracer::passed_light(const Ray& ray) const {
 }
 
 Spectrum Tracer::tint(const Ray& ray, float t) const {
-    if (!impl_->coloured_panes) return Spectrum{1};
+    if (!has_coloured_panes_) return Spectrum{1};
     RTCRay query;
     set_ray(query, ray);
     query.tfar = t;
@@ -283,6 +283,12 @@ void Tracer::occluded(std::span<const Ray, packet_size> rays, std::span<bool, pa
 
 void Tracer::passed_light(std::span<const Ray, packet_size> rays,
                           std::span<Spectrum, packet_size> share) const {
+    if (!has_panes_) {
+        LaneMask blocked;
+        occluded(in_lanes(rays), blocked);
+        for (std::size_t i = 0; i < packet_size; ++i) share[i] = Spectrum{blocked[i] != 0 ? 0.0f : 1.0f};
+        return;
+    }
     SpectrumLanes lanes;
     passed_light(in_lanes(rays), lanes);
     for (std::size_t i = 0; i < packet_size; ++i) share[i] = lanes[i];

@@ -98,11 +98,11 @@ class Tracer {
     Tracer& operator=(const Tracer&) = delete;
 
     /// Whether there is anything that is not opaque: if not, Ray::opacity_seed does not matter.
-    [[nodiscard]] bool asks_for_opacity() const;
+    [[nodiscard]] bool asks_for_opacity() const { return asks_for_opacity_; }
     /// If not, passed_light() is 1 where `occluded` is false.
-    [[nodiscard]] bool has_panes() const;
+    [[nodiscard]] bool has_panes() const { return has_panes_; }
     /// If not, tint() is 1.
-    [[nodiscard]] bool has_coloured_panes() const;
+    [[nodiscard]] bool has_coloured_panes() const { return has_coloured_panes_; }
 
     [[nodiscard]] Hit closest_hit(const Ray& ray) const;
     /// Whether anything but panes is in the way.
@@ -129,6 +129,7 @@ class Tracer {
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
+    bool asks_for_opacity_ = false, has_panes_ = false, has_coloured_panes_ = false;
 };
 
 }  // namespace relumine
