@@ -12,9 +12,6 @@ namespace {
 constexpr double double_pi = std::numbers::pi;
 constexpr Cone every_direction{{0, 0, 1}, static_cast<float>(double_pi)};
 
-/// So that rounding cannot hide a light at the rim of a bound.
-constexpr float rim = 1e-3f;
-
 /// cos(max(0, a − b)) of angles in [0, π].
 float cos_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
     return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
@@ -80,7 +77,7 @@ LightCluster::LightCluster(const LightBounds& bounds)
 float importance(const LightCluster& c, Vec3 from) {
     const Vec3 way = from - c.center;
     const float distance2 = length_squared(way), radius2 = sqr(c.radius);
-    if (!(distance2 > radius2)) return c.intensity / std::max(radius2, 1e-20f);
+    if (!(distance2 > radius2)) return c.intensity / std::max(radius2, least_light_radius2);
     float cos_w = std::clamp(dot(c.axis, way) / std::sqrt(distance2), -1.0f, 1.0f);
     if (c.two_sided) cos_w = std::abs(cos_w);
     const float sin_w = sine(cos_w);
@@ -88,8 +85,8 @@ float importance(const LightCluster& c, Vec3 from) {
     const float sin_x = sin_of_difference(sin_w, cos_w, c.sin_normals, c.cos_normals);
     const float sin2_b = radius2 / distance2, cos_b = std::sqrt(1 - sin2_b);
     const float cosine = cos_of_difference(sin_x, cos_x, std::sqrt(sin2_b), cos_b);
-    if (cosine < c.cos_spread - rim) return 0;
-    return c.intensity * std::max(cosine, rim) / distance2;
+    if (cosine < c.cos_spread - light_rim) return 0;
+    return c.intensity * std::max(cosine, light_rim) / distance2;
 }
 
 }  // namespace relumine

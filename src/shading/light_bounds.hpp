@@ -41,6 +41,11 @@ struct LightCluster {
     explicit LightCluster(const LightBounds& bounds);
 };
 
+/// A cosine: so that rounding cannot hide a light at the rim of a bound.
+inline constexpr float light_rim = 1e-3f;
+/// metres², so that a point on a point light divides by something.
+inline constexpr float least_light_radius2 = 1e-20f;
+
 /// About how much of the group's light arrives at `from`, and never 0 where any may; W·m⁻² up to a factor.
 [[nodiscard]] float importance(const LightCluster& cluster, Vec3 from);
 

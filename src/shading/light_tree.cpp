@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/assert.hpp"
 
@@ -13,12 +14,28 @@ namespace relumine {
 namespace {
 
 constexpr int buckets = 12;
-constexpr int balanced_depth = 24;  // from here on groups are halved: the depth stays below 64
+constexpr int levels_per_group = 3;  // of the binary tree: 8 children
+constexpr int balanced_depth = 24;   // from here on groups are halved: the depth stays below 64
 constexpr std::uint64_t never_drawn = ~std::uint64_t{0};
 
 float coordinate(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 }  // namespace
+
+void LightGroup::set(std::size_t child, const LightCluster& c) {
+    center_x[child] = c.center.x;
+    center_y[child] = c.center.y;
+    center_z[child] = c.center.z;
+    radius[child] = c.radius;
+    axis_x[child] = c.axis.x;
+    axis_y[child] = c.axis.y;
+    axis_z[child] = c.axis.z;
+    cos_normals[child] = c.cos_normals;
+    sin_normals[child] = c.sin_normals;
+    cos_spread[child] = c.cos_spread;
+    intensity[child] = c.intensity;
+    two_sided[child] = c.two_sided ? -1 : 0;
+}
 
 class LightTree::Builder {
   public:
@@ -26,32 +43,62 @@ class LightTree::Builder {
         for (std::uint32_t i = 0; i < lights.size(); ++i)
             if (lights[i].intensity > 0) order_.push_back(i);
         RELUMINE_ASSERT(!order_.empty());
-        tree_.nodes_.reserve(2 * order_.size() - 1);
         tree_.paths_.assign(lights.size(), never_drawn);
     }
 
-    void build() { add(order_, 0, 0); }
+    void build() { add_group({order_, bounds_of(order_), 0}, 0, 0); }
 
   private:
+    /// A node of the binary tree.
+    struct Part {
+        std::span<std::uint32_t> lights;
+        LightBounds bounds;
+        int depth;
+    };
     /// Where to split: lights in buckets below `bucket` along `axis` come first.
     struct Split {
         int axis = -1, bucket = 0;
         double cost = std::numeric_limits<double>::infinity();
     };
 
-    void add(std::span<std::uint32_t> lights, std::uint64_t path, int depth) {
+    [[nodiscard]] LightBounds bounds_of(std::span<const std::uint32_t> lights) const {
         LightBounds bounds;
         for (const std::uint32_t light : lights) bounds = unite(bounds, lights_[light]);
-        const std::size_t node = tree_.nodes_.size();
-        tree_.nodes_.push_back({LightCluster(bounds), lights.front(), lights.size() == 1});
-        if (lights.size() == 1) {
-            tree_.paths_[lights.front()] = path;
-            return;
+        return bounds;
+    }
+
+    /// Appends the group of the part's children, then theirs; returns its index.
+    std::uint32_t add_group(const Part& whole, std::uint64_t path, int level) {
+        const std::size_t group = tree_.groups_.size();
+        tree_.groups_.emplace_back();
+        std::vector<Part> parts{whole};
+        for (int i = 0; i < levels_per_group; ++i) parts = halves_of(parts);
+        for (std::size_t child = 0; child < parts.size(); ++child) {
+            const std::uint64_t here = path | std::uint64_t{child} << (levels_per_group * level);
+            const bool is_light = parts[child].lights.size() == 1;
+            const std::uint32_t light = parts[child].lights.front();
+            if (is_light) tree_.paths_[light] = here;
+            const std::uint32_t next = is_light ? light : add_group(parts[child], here, level + 1);
+            LightGroup& g = tree_.groups_[group];
+            g.set(child, LightCluster(parts[child].bounds));
+            g.next[child] = next;
+            g.is_light[child] = is_light;
         }
-        const std::size_t middle = divide(lights, bounds, depth);
-        add(lights.first(middle), path, depth + 1);
-        tree_.nodes_[node].next = static_cast<std::uint32_t>(tree_.nodes_.size());
-        add(lights.subspan(middle), path | std::uint64_t{1} << depth, depth + 1);
+        return static_cast<std::uint32_t>(group);
+    }
+
+    [[nodiscard]] std::vector<Part> halves_of(std::span<const Part> parts) const {
+        std::vector<Part> halves;
+        for (const Part& part : parts) {
+            if (part.lights.size() == 1) {
+                halves.push_back(part);
+                continue;
+            }
+            const std::size_t middle = divide(part.lights, part.bounds, part.depth);
+            for (const auto half : {part.lights.first(middle), part.lights.subspan(middle)})
+                halves.push_back({half, bounds_of(half), part.depth + 1});
+        }
+        return halves;
     }
 
     /// Puts the lights in order; returns how many belong to the first child.
@@ -102,39 +149,39 @@ class LightTree::Builder {
 
 LightTree::LightTree(std::span<const LightBounds> lights) { Builder(lights, *this).build(); }
 
-float LightTree::first_share(const Node& first, const Node& second, Vec3 from) const {
-    const float a = importance(first.cluster, from), b = importance(second.cluster, from);
-    return a + b > 0 ? a / (a + b) : -1;
-}
-
 std::optional<LightTree::Choice> LightTree::sample(Vec3 from, float u) const {
     float probability = 1;
-    for (std::size_t i = 0; !nodes_[i].leaf;) {
-        const std::size_t first = i + 1, second = nodes_[i].next;
-        const float share = first_share(nodes_[first], nodes_[second], from);
-        if (share < 0) return {};
-        const bool takes_first = u < share;
-        u = takes_first ? u / share : (u - share) / (1 - share);
-        u = std::min(u, 0x1.fffffep-1f);
-        probability *= takes_first ? share : 1 - share;
-        i = takes_first ? first : second;
-        if (nodes_[i].leaf) return Choice{nodes_[i].next, probability, u};
+    for (const LightGroup* group = groups_.data();;) {
+        LightGroup::Eight<float> shares;
+        importances(*group, from, shares);
+        const float total = std::accumulate(shares.begin(), shares.end(), 0.0f);
+        if (!(total > 0)) return {};
+        float left = u * total;
+        std::size_t child = 0, last = 0;
+        for (std::size_t i = 0; i < light_group_size; ++i)
+            if (shares[i] > 0) last = i;
+        while (child < last && !(left < shares[child])) left -= shares[child++];
+        u = std::clamp(left / shares[child], 0.0f, 0x1.fffffep-1f);
+        probability *= shares[child] / total;
+        if (group->is_light[child]) return Choice{group->next[child], probability, u};
+        group = &groups_[group->next[child]];
     }
-    return Choice{nodes_[0].next, 1, u};
 }
 
 float LightTree::probability(Vec3 from, std::uint32_t light) const {
     std::uint64_t path = paths_[light];
     if (path == never_drawn) return 0;
     float probability = 1;
-    for (std::size_t i = 0; !nodes_[i].leaf; path >>= 1) {
-        const std::size_t first = i + 1, second = nodes_[i].next;
-        const float share = first_share(nodes_[first], nodes_[second], from);
-        if (share < 0) return 0;
-        probability *= (path & 1) == 0 ? share : 1 - share;
-        i = (path & 1) == 0 ? first : second;
+    for (const LightGroup* group = groups_.data();; path >>= levels_per_group) {
+        LightGroup::Eight<float> shares;
+        importances(*group, from, shares);
+        const float total = std::accumulate(shares.begin(), shares.end(), 0.0f);
+        const std::size_t child = step(path);
+        if (!(total > 0)) return 0;
+        probability *= shares[child] / total;
+        if (group->is_light[child]) return probability;
+        group = &groups_[group->next[child]];
     }
-    return probability;
 }
 
 }  // namespace relumine

@@ -2,6 +2,7 @@
 // A tree over many lights, from whose root a random walk finds one that matters where it is asked.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,8 +12,27 @@
 
 namespace relumine {
 
-/// A binary tree over lights, built by the surface area orientation heuristic; a walk goes to either child in
-/// proportion to its importance [Conty18]. Built alike on every machine; immutable.
+/// Eight children of a node side by side, or fewer: the others have no intensity.
+inline constexpr std::size_t light_group_size = 8;
+struct LightGroup {
+    template <typename T>
+    using Eight = std::array<T, light_group_size>;
+
+    alignas(32) Eight<float> center_x{}, center_y{}, center_z{}, radius{}, axis_x{}, axis_y{}, axis_z{},
+        cos_normals{}, sin_normals{}, cos_spread{}, intensity{};
+    Eight<std::int32_t> two_sided{};  // −1 or 0
+    Eight<std::uint32_t> next{};      // a light, or the group of the child's children
+    Eight<bool> is_light{};
+
+    void set(std::size_t child, const LightCluster& cluster);
+};
+
+/// importance() of the eight clusters, with the same bits.
+void importances(const LightGroup& group, Vec3 from, LightGroup::Eight<float>& values);
+
+/// A tree over lights with up to eight children per node, three levels of a binary one that was built by the
+/// surface area orientation heuristic; a walk goes to a child in proportion to its importance [Conty18].
+/// Built alike on every machine; immutable.
 class LightTree {
   public:
     /// Lights without intensity are never drawn. There is at least one with.
@@ -30,23 +50,16 @@ class LightTree {
     [[nodiscard]] float probability(Vec3 from, std::uint32_t light) const;
 
     [[nodiscard]] std::size_t bytes() const {
-        return nodes_.size() * sizeof(Node) + paths_.size() * sizeof(std::uint64_t);
+        return groups_.size() * sizeof(LightGroup) + paths_.size() * sizeof(std::uint64_t);
     }
 
   private:
-    struct Node {
-        LightCluster cluster;
-        std::uint32_t next = 0;  // the second child (the first follows at once), or the light of a leaf
-        bool leaf = false;
-    };
     class Builder;
+    /// What the next child on a light's path is: three bits a level.
+    [[nodiscard]] static std::size_t step(std::uint64_t path) { return path % light_group_size; }
 
-    /// The probability of the first child of an inner node; < 0 where neither shines on `from`.
-    [[nodiscard]] float first_share(const Node& first, const Node& second, Vec3 from) const;
-
-    std::vector<Node> nodes_;  // root first, then depth first
-    std::vector<std::uint64_t>
-        paths_;  // per light: bit i is 1 where the walk takes the second child at level i
+    std::vector<LightGroup> groups_;    // the root's first
+    std::vector<std::uint64_t> paths_;  // per light: the steps from the root, lowest bits first
 };
 
 }  // namespace relumine
