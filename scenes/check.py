@@ -13,6 +13,7 @@ SCRIPTS = {
     "furnace.py": "",
     "grey_sphere.py": "",
     "interior.py": "",
+    "lights.py": "",
     "shadow.py": "",
     "validation.py": "validation"
 }  # script, folder it writes to

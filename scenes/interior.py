@@ -309,8 +309,8 @@ def write_sky(path, width, height):
 def sky(w, sun):
     if w[1] < 0:
         return (0.42, 0.38, 0.30)
-    haze = (1 - w[1])**4
-    glow = 1.6 * math.exp(-(round(angle_between(w, sun), 4) / 0.22)**1.2)
+    haze = (1 - w[1]) ** 4
+    glow = 1.6 * math.exp(-(round(angle_between(w, sun), 4) / 0.22) ** 1.2)
     return tuple(
         round(zenith + (horizon - zenith) * haze + glow * warm, 3)
         for zenith, horizon, warm in zip((0.26, 0.48, 0.95), (1.0, 1.05, 1.1), (1.0, 0.9, 0.75)))
@@ -329,7 +329,7 @@ def sun_texels(sun, width, height, parts=16):
                                                 (j + 0.5) / parts, width, height)), sun) < radius
                 for i in range(parts) for j in range(parts))
             if inside:
-                covered[x, y] = inside / parts**2
+                covered[x, y] = inside / parts ** 2
     return covered
 
 
