@@ -236,21 +236,22 @@ std::size_t LightSampler::choose_by_power(float u) const {
 }
 
 std::optional<LightSampler::LocalChoice> LightSampler::choose_local(Vec3 from, float u) const {
-    if (tree_ && u < tree_probability_) {
+    if (!tree_) {
+        const std::size_t chosen = choose_by_power(u);
+        return LocalChoice{chosen, 1,
+                           rescale(u, local_cdf_[chosen], local_cdf_[chosen + 1] - local_cdf_[chosen])};
+    }
+    if (u < tree_probability_) {
         const auto drawn = tree_->sample(from, rescale(u, 0, tree_probability_));
         if (!drawn) return {};
         return LocalChoice{drawn->light, tree_probability_ * drawn->probability, drawn->u};
     }
-    float probability = 1;
-    if (tree_) {
-        const float far = 1 - local_cdf_[places_];  // of directional lights, by power
-        u = std::min(lerp(local_cdf_[places_], 1.0f, rescale(u, tree_probability_, 1 - tree_probability_)),
-                     0x1.fffffep-1f);
-        probability = (1 - tree_probability_) / far;
-    }
+    const float near = local_cdf_[places_];  // directional lights lie above, by power
+    u = std::min(lerp(near, 1.0f, rescale(u, tree_probability_, 1 - tree_probability_)), 0x1.fffffep-1f);
     const std::size_t chosen = choose_by_power(u);
     const float share = local_cdf_[chosen + 1] - local_cdf_[chosen];
-    return LocalChoice{chosen, tree_ ? probability * share : 1, rescale(u, local_cdf_[chosen], share)};
+    return LocalChoice{chosen, (1 - tree_probability_) * share / (1 - near),
+                       rescale(u, local_cdf_[chosen], share)};
 }
 
 std::optional<LightSample> LightSampler::sample_local(const LocalChoice& chosen, Vec3 from, Point2 u) const {
