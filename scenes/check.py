@@ -12,6 +12,8 @@ SCRIPTS = {
     "demo.py": "",
     "furnace.py": "",
     "grey_sphere.py": "",
+    "interior.py": "",
+    "lights.py": "",
     "shadow.py": "",
     "validation.py": "validation"
 }  # script, folder it writes to
@@ -37,7 +39,7 @@ def main():
 def generated(root):
     return {
         path.relative_to(root).as_posix()
-        for pattern in ("*.glb", "*.pfm")
+        for pattern in ("*.glb", "*.hdr", "*.pfm")
         for path in root.rglob(pattern)
     }
 

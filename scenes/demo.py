@@ -12,7 +12,7 @@ import random
 import textures
 from glb import MATTE, Glb, Mesh, about, output_folder
 from shapes import (add, ball, box, cross, curve, joined, lathe, length, mix, moved, mul, quad, rotation,
-                    rounded_box, sheet, smooth, sub, tube, unit)
+                    rounded_box, sheet, smooth, sub, tube, unit, without_uvs, wooden)
 
 SUN_AZIMUTH = 36.0  # of sky.exr, degrees of atan2(z, x)
 SUN_FROM = 138.0  # where the room wants it
@@ -119,13 +119,6 @@ def add_table(glb, root):
         for z in (z0 + 0.06, z1 - 0.06):
             parts.append(moved(wooden((0.055, leg, 0.055), 0.004), (x, -thick - leg / 2, z)))
     glb.mesh("table", [(joined(parts), wood)], root)
-
-
-def wooden(size, radius, uv_offset=(0, 0)):
-    """A board whose grain runs along its longest side; the wood's picture is 1.6 m long and 0.16 m high."""
-    board = rounded_box(size, radius)
-    board.uvs = [(u / 1.6 + uv_offset[0], v / 0.16 + uv_offset[1]) for u, v in board.uvs]
-    return board
 
 
 def add_cloth(glb, root):
@@ -385,10 +378,6 @@ def book(size):
                   (0, high / 2, -0.002))
     pages.uvs = [(y * 60, 0.5) for _, y, _ in pages.positions]  # the sheets lie on each other
     return without_uvs(joined(covers)), pages
-
-
-def without_uvs(mesh):
-    return Mesh(mesh.positions, mesh.triangles, mesh.normals)
 
 
 if __name__ == "__main__":

@@ -245,6 +245,49 @@ def write_pfm(path, width, height, pixels):
                 file.write(struct.pack("<3f", *pixel))
 
 
+def write_hdr(path, rows):
+    """A Radiance picture (RGBE, run-length coded) of rows of (r, g, b) from the top; 8 to 32767 wide."""
+    width = len(rows[0])
+    with open(path, "wb") as file:
+        file.write(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {len(rows)} +X {width}\n".encode())
+        for row in rows:
+            file.write(struct.pack(">BBH", 2, 2, width))
+            for channel in zip(*(_rgbe(pixel) for pixel in row)):
+                file.write(_runs(channel))
+
+
+def _rgbe(pixel):
+    """The channels' mantissas and their common exponent."""
+    if max(pixel) < 1e-32:
+        return (0, 0, 0, 0)
+    exponent = math.frexp(max(pixel))[1]
+    return (*(min(255, int(math.ldexp(value, 8 - exponent))) for value in pixel), exponent + 128)
+
+
+def _runs(values):
+    """Bytes as runs (128 + length, value) and literals (length, values)."""
+    coded, literal, start = bytearray(), bytearray(), 0
+
+    def flush():
+        for i in range(0, len(literal), 128):
+            part = literal[i:i + 128]
+            coded.extend((len(part), *part))
+        literal.clear()
+
+    while start < len(values):
+        end = start
+        while end < len(values) and end - start < 127 and values[end] == values[start]:
+            end += 1
+        if end - start > 2:
+            flush()
+            coded.extend((128 + end - start, values[start]))
+        else:
+            literal.extend(values[start:end])
+        start = end
+    flush()
+    return bytes(coded)
+
+
 def _rounded(x):
     return round(x, POSITION_DIGITS) + 0.0  # + 0.0 turns -0.0 into 0.0
 

@@ -73,6 +73,10 @@ def rewound(mesh):
     return Mesh(mesh.positions, [(a, c, b) for a, b, c in mesh.triangles], mesh.normals, mesh.uvs)
 
 
+def without_uvs(mesh):
+    return Mesh(mesh.positions, mesh.triangles, mesh.normals)
+
+
 def area(mesh):
     return sum(length(_twice_area(mesh, triangle)) / 2 for triangle in mesh.triangles)
 
@@ -149,6 +153,13 @@ def rounded_box(size, radius, steps=2):
             outward = (sign > 0) == (axis != 1)  # (others, axis) is left-handed for y
             meshes.append(side if outward else rewound(side))
     return joined(meshes)
+
+
+def wooden(size, radius, uv_offset=(0, 0), steps=2):
+    """A board whose grain runs along its longest side; the wood's picture is 1.6 m long and 0.16 m high."""
+    board = rounded_box(size, radius, steps)
+    board.uvs = [(u / 1.6 + uv_offset[0], v / 0.16 + uv_offset[1]) for u, v in board.uvs]
+    return board
 
 
 # --- curved shapes ---

@@ -75,10 +75,14 @@ View make_view(const RenderSettings& s, const Framing& f) {
 }
 
 Tracer make_tracer(const SceneData& scene) {
-    return {scene, [&scene](const Hit& hit) {
-                const Mesh& mesh = scene.meshes[index(scene.instances[hit.instance].mesh)];
-                return opacity(scene, scene.materials[index(mesh.material)], texture_coordinates(mesh, hit));
-            }};
+    return {
+        scene,
+        [&scene](const Hit& hit) {
+            const Mesh& mesh = scene.meshes[index(scene.instances[hit.instance].mesh)];
+            return opacity(scene, scene.materials[index(mesh.material)], texture_coordinates(mesh, hit));
+        },
+        {[&scene](const Mesh& mesh) { return pane_kind(scene, mesh); },
+         [&scene](const Hit& hit, WorldDir direction) { return pane_transmittance(scene, hit, direction); }}};
 }
 
 }  // namespace

@@ -65,7 +65,8 @@ RenderSettings small(const std::string& method) {
 }
 
 class Methods : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Radiosity, Methods, ::testing::Values("gather", "reproject", "cache", "block-gather"));
+INSTANTIATE_TEST_SUITE_P(Radiosity, Methods,
+                         ::testing::Values("gather", "reproject", "cache", "block-gather"));
 
 TEST_P(Methods, ABrightRoomKeepsItsEnergy) {  // emission 1 − ρ, albedo ρ = .9: ten times the direct light
     SceneBuilder builder;
@@ -82,8 +83,8 @@ TEST(Radiosity, DepthCounts) {  // emission ½, albedo ½: ½ + ¼ + …
     RenderSettings settings = small("gather");
     for (int depth = 0; depth < 5; ++depth) {
         settings.max_depth = depth;
-        EXPECT_NEAR(mean_of(render(project_scene("furnace-walls-50.glb"), settings)), 1 - std::pow(0.5, depth + 1),
-                    0.004)
+        EXPECT_NEAR(mean_of(render(project_scene("furnace-walls-50.glb"), settings)),
+                    1 - std::pow(0.5, depth + 1), 0.004)
             << depth;
     }
 }
@@ -115,7 +116,8 @@ TEST(Radiosity, AWallOfACentimetreLetsNothingThrough) {
     SceneBuilder builder;
     const std::size_t white = builder.add_material(matte(0.8f));
     add_room(builder, white, {-2, 0, -2}, {2, 2, 2});
-    for (const float x : {-0.005f, 0.005f}) add_quad(builder, white, {x, 0, -2}, {x, 2, -2}, {x, 2, 2}, {x, 0, 2});
+    for (const float x : {-0.005f, 0.005f})
+        add_quad(builder, white, {x, 0, -2}, {x, 2, -2}, {x, 2, 2}, {x, 0, 2});
     builder.add_light(PointLightDescription{{-1, 1.5f, 0}, {10, 10, 10}});
     builder.add_camera(camera_at(-1, 1, 1.9));
     const Scene scene = builder.build();

@@ -84,15 +84,18 @@ class MapTracer {
             ++counts_.non_finite;
             found = {};
         }
+        const Tracer& tracer = source_.radiance.transport.tracer;
+        const bool coloured = !hit && tracer.has_coloured_panes();
+        const Spectrum tint = coloured ? tracer.tint(rays_[lane], hit.t) : Spectrum{1};
         for (std::uint32_t texel = ray.first_texel; texel < ray.first_texel + ray.texels; ++texel) {
             distances_[texel] = hit.t;
-            map_.direct.put(texel, hit ? found.direct : source_.environment.texels[texel]);
+            map_.direct.put(texel, hit ? found.direct : source_.environment.texels[texel] * tint);
             if (!map_.indirect.empty() && hit) map_.indirect.put(texel, found.indirect);
         }
         const auto bits =
             static_cast<std::uint16_t>(((1u << ray.texels) - 1) << (ray.first_texel % tile_texels));
         map_.known[ray.first_texel / tile_texels] |= bits;
-        if (!hit) map_.open[ray.first_texel / tile_texels] |= bits;
+        if (!hit && tint == Spectrum{1}) map_.open[ray.first_texel / tile_texels] |= bits;
     }
 
     const MapSource& source_;

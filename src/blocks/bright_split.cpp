@@ -16,7 +16,10 @@ BrightSplit::BrightSplit(const SceneData& scene, float factor, const RadianceFie
     : scene_(scene),
       field_(field),
       threshold_(bright_threshold(scene, factor)),
-      lights_(scene, {threshold_, false, false, field ? local_factor * field->mean_radiance() : infinity}) {}
+      lights_(scene, {.threshold = threshold_,
+                      .delta_lights = false,
+                      .compensate_for_mis = false,
+                      .most_local_threshold = field ? local_factor * field->mean_radiance() : infinity}) {}
 
 /// What rises over the threshold, so that the dim part stays continuous at the rim of a sun.
 float BrightSplit::excess(Spectrum radiance) const {

@@ -116,10 +116,10 @@ Spectrum GatherEstimate::bright_light(const ShadingPoint& x, const SampleStream&
         if (!light) continue;
         const Spectrum reflected = unshadowed(x.vertex, *light);
         if (is_black(reflected)) continue;
-        if (in_shadow(transport_, x.vertex.point, *light, s.bits(Dim::opacity, 2 * x.path.depth + 1), rays))
-            continue;
+        const Spectrum passed = passed_light(transport_, x.vertex.point, *light,
+                                             s.bits(Dim::opacity, 2 * x.path.depth + 1), rays);
         const float bsdf_pdf = pdf(x.vertex.bsdf, x.vertex.w_out, x.vertex.point.frame.to_local(light->w_in));
-        sum += reflected
+        sum += reflected * passed
                / (static_cast<float>(light_samples_) * light->pdf + static_cast<float>(rays_) * bsdf_pdf);
     }
     return sum;

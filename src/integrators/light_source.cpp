@@ -16,7 +16,8 @@ int seeds_along(const View& view) { return std::clamp(std::max(view.width, view.
 CameraSample seed_sample(const View& view, const Tracer& tracer, int column, int row) {
     CameraSample s;
     const auto at = [&](int i, int pixels) {
-        return (static_cast<float>(i) + 0.5f) / static_cast<float>(seeds_along(view)) * static_cast<float>(pixels);
+        return (static_cast<float>(i) + 0.5f) / static_cast<float>(seeds_along(view))
+               * static_cast<float>(pixels);
     };
     const Vec2 pixel{at(column, view.width), at(row, view.height)};
     s.x = static_cast<int>(pixel.x);
@@ -28,8 +29,8 @@ CameraSample seed_sample(const View& view, const Tracer& tracer, int column, int
     return s;
 }
 
-void add_seeds(const Transport& t, const CameraSample& sample, std::uint32_t max_depth, std::vector<FieldSeed>& seeds,
-               RayCounts& rays) {
+void add_seeds(const Transport& t, const CameraSample& sample, std::uint32_t max_depth,
+               std::vector<FieldSeed>& seeds, RayCounts& rays) {
     Spectrum emission;
     const auto x = follow_prefix(t, sample, max_depth, emission, rays);
     if (!x) return;
@@ -43,7 +44,8 @@ void add_seeds(const Transport& t, const CameraSample& sample, std::uint32_t max
 
 IncidentRadiance incident_source(const RenderSettings& settings, const Transport& transport) {
     const bool exact = settings.method == "cache" && settings.unbiased;
-    return {transport, depth_limit(settings), source_depth(settings.radiance), exact ? nullptr : transport.field};
+    return {transport, depth_limit(settings), source_depth(settings.radiance),
+            exact ? nullptr : transport.field};
 }
 
 bool wants_field(const RenderSettings& settings) {
@@ -52,19 +54,22 @@ bool wants_field(const RenderSettings& settings) {
 }
 
 std::unique_ptr<RadianceField> make_field(const RenderSettings& settings, const Transport& transport,
-                                          const View& view, const std::function<bool()>& stop, RayCounts& rays) {
+                                          const View& view, const std::function<bool()>& stop,
+                                          RayCounts& rays) {
     const FlushDenormals flush;
     std::vector<FieldSeed> seeds;
     for (int row = 0; row < seeds_along(view); ++row)
         for (int column = 0; column < seeds_along(view); ++column) {
             rays.add(RayPurpose::camera);
-            add_seeds(transport, seed_sample(view, transport.tracer, column, row), depth_limit(settings), seeds, rays);
+            add_seeds(transport, seed_sample(view, transport.tracer, column, row), depth_limit(settings),
+                      seeds, rays);
         }
     FieldSettings field;
     field.seed = settings.seed;
     field.threads = resolve_threads(settings.threads);
     field.stop = stop;
-    if (settings.max_depth >= 0) field.bounces = static_cast<std::uint32_t>(std::max(settings.max_depth - 2, 0));
+    if (settings.max_depth >= 0)
+        field.bounces = static_cast<std::uint32_t>(std::max(settings.max_depth - 2, 0));
     return std::make_unique<RadianceField>(transport, seeds, field, rays);
 }
 

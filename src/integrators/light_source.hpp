@@ -11,8 +11,8 @@
 
 namespace relumine {
 
-/// What gather rays bring back: from `transport.field`, where there is one and the method may be biased, or as
-/// the settings say.
+/// What gather rays bring back: from `transport.field`, where there is one and the method may be biased, or
+/// as the settings say.
 [[nodiscard]] IncidentRadiance incident_source(const RenderSettings& settings, const Transport& transport);
 
 /// Whether a method looks light up in a radiance field: `radiosity`, or `auto` where light is reflected more
@@ -20,8 +20,8 @@ namespace relumine {
 [[nodiscard]] bool wants_field(const RenderSettings& settings);
 
 /// The field of a scene as the camera's full frame sees it. `stop` may be empty.
-[[nodiscard]] std::unique_ptr<RadianceField> make_field(const RenderSettings& settings, const Transport& transport,
-                                                        const View& view, const std::function<bool()>& stop,
-                                                        RayCounts& rays);
+[[nodiscard]] std::unique_ptr<RadianceField> make_field(const RenderSettings& settings,
+                                                        const Transport& transport, const View& view,
+                                                        const std::function<bool()>& stop, RayCounts& rays);
 
 }  // namespace relumine

@@ -152,13 +152,19 @@ void ResidualEstimator::trace_residual() {
 
 void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const Hit& hit,
                                 const SplitRadiance& found) const {
+    const Transport& t = settings_.source.transport;
     BrightSplit::Part bright;
-    if (!is_black(found.direct))
-        bright = hit ? settings_.split.of_emission(ray, hit)
-                     : settings_.split.of_environment(ray.direction, found.direct);
+    if (!is_black(found.direct)) {
+        const bool coloured = !hit && t.tracer.has_coloured_panes();  // what arrives is not what shines
+        bright =
+            hit ? settings_.split.of_emission(ray, hit)
+                : settings_.split.of_environment(
+                    ray.direction, coloured ? t.lights.environment_radiance(ray.direction) : found.direct);
+    }
+    const Spectrum colour = !hit && t.tracer.has_coloured_panes() ? t.tracer.tint(ray, hit.t) : Spectrum{1};
     const bool true_dim = hit || settings_.exact || ray.t_max < 0;
     const Spectrum dim =
-        true_dim ? found.direct * (1 - bright.share) : settings_.environment.texels[drawn.texel];
+        true_dim ? found.direct * (1 - bright.share) : settings_.environment.texels[drawn.texel] * colour;
     SampledRadiance& sum = *drawn.sum;
     sum.residual.direct += (drawn.bsdf * dim - drawn.held.direct) / drawn.density;
     const bool brightly = hit && !is_black(found.indirect) && settings_.split.reflects_brightly(ray, hit);
@@ -193,11 +199,11 @@ void ResidualEstimator::add_light(const IntegratedPoint& point, const SampleStre
 void ResidualEstimator::trace_light() {
     if (light_count_ == 0) return;
     for (std::size_t lane = light_count_; lane < packet_size; ++lane) light_rays_[lane].t_max = -1;
-    std::array<bool, packet_size> blocked;
+    std::array<Spectrum, packet_size> passed;
     counts_.add(RayPurpose::shadow, light_count_);
-    settings_.source.transport.tracer.occluded(light_rays_, blocked);
+    settings_.source.transport.tracer.passed_light(light_rays_, passed);
     for (std::size_t lane = 0; lane < light_count_; ++lane)
-        if (!blocked[lane]) light_[lane].sum->bright += light_[lane].reflected;
+        light_[lane].sum->bright += light_[lane].reflected * passed[lane];
     light_count_ = 0;
 }
 

@@ -29,6 +29,7 @@ std::optional<ShadingPoint> follow_prefix(const Transport& t, const CameraSample
         if (!path.alive) return {};
         rays.add(RayPurpose::prefix);
         path.hit = t.tracer.closest_hit(path.ray);
+        tint(t, path);
     }
     if (!path.hit) emission += path.throughput * arriving_emission(t, path, nullptr);
     return {};

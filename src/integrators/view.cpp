@@ -35,7 +35,10 @@ CameraPacket trace_block(const View& view, const Tracer& tracer, int x0, int y0,
         samples[i].path.ray = rays[i];
     }
     tracer.closest_hits(rays, hits, Coherence::coherent);
-    for (std::size_t i = 0; i < packet_size; ++i) samples[i].path.hit = hits[i];
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        samples[i].path.hit = hits[i];
+        if (tracer.has_coloured_panes()) samples[i].path.throughput = tracer.tint(rays[i], hits[i].t);
+    }
     return samples;
 }
 

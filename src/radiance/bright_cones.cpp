@@ -78,7 +78,8 @@ ConeSample sample(const BrightCones::Table& table, Point2 u) {
     std::size_t i = 0;
     while (i + 1 < table.count && u.x >= table.probability[i]) u.x -= table.probability[i++];
     const float x = std::clamp(u.x / table.probability[i], 0.0f, 0x1.fffffep-1f);
-    const float height = table.one_less_cosine[i] * u.y, sine = std::sqrt(std::max(0.0f, height * (2 - height)));
+    const float height = table.one_less_cosine[i] * u.y,
+                sine = std::sqrt(std::max(0.0f, height * (2 - height)));
     const auto [s, c] = sine_cosine_of_turns(x);
     const WorldDir direction = frame_around(table.axis[i]).to_world({{sine * c, sine * s, 1 - height}});
     return {direction, pdf(table, direction)};

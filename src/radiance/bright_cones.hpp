@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bright split once more, behind the first surface: the few pieces of surface that reflect much more light
-// than the others (sun on a floor, the inside of a lampshade) as small lights to sample.
+// The bright split once more, behind the first surface: the few pieces of surface that reflect much more
+// light than the others (sun on a floor, the inside of a lampshade) as small lights to sample.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ class BrightCones {
 
     /// The spheres as they are seen from one point.
     struct Table {
-        std::array<Vec3, most> axis;         // unit
+        std::array<Vec3, most> axis;              // unit
         std::array<float, most> one_less_cosine;  // 1 − the cosine of the cone's half angle; 2: all around
         std::array<float, most> probability;
         std::size_t count = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cones around bright elements: densities that integrate to 1, that `sample` follows, and that miss nothing bright.
+// Cones around bright elements: densities that integrate to 1, that `sample` follows, and that miss nothing
+// bright.
 #include "radiance/bright_cones.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +52,8 @@ TEST_P(ConesFrom, DensityIntegratesToOne) {  // over the sphere, 2²⁰ Sobol po
     constexpr std::uint32_t count = 1 << 20;
     double sum = 0;
     for (std::uint32_t i = 0; i < count; ++i)
-        sum += double{pdf(table, uniform_direction(SampleStream{1, i, count, PointSet::sobol}.next2(Dim::direction)))};
+        sum += double{
+            pdf(table, uniform_direction(SampleStream{1, i, count, PointSet::sobol}.next2(Dim::direction)))};
     EXPECT_NEAR(sum * 4 * double{pi} / count, 1, 0.01);
 }
 
@@ -80,7 +82,8 @@ TEST_P(ConesFrom, EveryBrightPointCanBeDrawn) {
     const auto table = cones_of(cells).seen_from(GetParam(), -up);
     for (const FieldElement& e : cells.elements()) {
         if (!e.bright) continue;
-        for (const Vec3 corner : {Vec3{-1, 0, -1}, Vec3{1, 0, -1}, Vec3{-1, 0, 1}, Vec3{1, 0, 1}, Vec3{0, 0, 0}}) {
+        for (const Vec3 corner :
+             {Vec3{-1, 0, -1}, Vec3{1, 0, -1}, Vec3{-1, 0, 1}, Vec3{1, 0, 1}, Vec3{0, 0, 0}}) {
             const Vec3 way = e.position + corner * (0.499f * e.size) - GetParam();
             EXPECT_GT(pdf(table, {normalize(way)}), 0);
         }

@@ -16,10 +16,10 @@ Ray shadow_ray(const SurfacePoint& point, const LightSample& light, std::uint32_
     return ray;
 }
 
-bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light,
-               std::uint32_t opacity_seed, RayCounts& rays) {
+Spectrum passed_light(const Transport& t, const SurfacePoint& point, const LightSample& light,
+                      std::uint32_t opacity_seed, RayCounts& rays) {
     rays.add(RayPurpose::shadow);
-    return t.tracer.occluded(shadow_ray(point, light, opacity_seed));
+    return t.tracer.passed_light(shadow_ray(point, light, opacity_seed));
 }
 
 Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
@@ -44,7 +44,7 @@ Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opa
     Spectrum sum;
     for (const LightSample& light : delta_light_samples(t.scene, vertex.point.position)) {
         const Spectrum reflected = unshadowed(vertex, light);
-        if (!is_black(reflected) && !in_shadow(t, vertex.point, light, opacity_seed, rays)) sum += reflected;
+        if (!is_black(reflected)) sum += reflected * passed_light(t, vertex.point, light, opacity_seed, rays);
     }
     return sum;
 }

@@ -10,9 +10,10 @@ namespace relumine {
 /// The ray from `point` to the light sample.
 [[nodiscard]] Ray shadow_ray(const SurfacePoint& point, const LightSample& light, std::uint32_t opacity_seed);
 
-/// Whether anything blocks the way from `point` to the light sample.
-[[nodiscard]] bool in_shadow(const Transport& t, const SurfacePoint& point, const LightSample& light,
-                             std::uint32_t opacity_seed, RayCounts& rays);
+/// The share of the sample's light that reaches `point`: 0 in shadow, 1 if nothing is in the way, between
+/// behind panes.
+[[nodiscard]] Spectrum passed_light(const Transport& t, const SurfacePoint& point, const LightSample& light,
+                                    std::uint32_t opacity_seed, RayCounts& rays);
 
 /// The unshadowed light of a sample that the BSDF sends to the viewer: f·|cos θ|·L, or 0 where the sides
 /// disagree.

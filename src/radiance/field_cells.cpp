@@ -12,12 +12,14 @@ namespace {
 constexpr float least_cosine = 0.8f;
 constexpr float most_height = 0.35f;  // of the cell's size
 
-constexpr int coarser = 2;  // octaves: of cells for what only light on its way meets
-constexpr int coarsest = -20;            // octaves
+constexpr int coarser = 2;                 // octaves: of cells for what only light on its way meets
+constexpr int coarsest = -20;              // octaves
 constexpr int most_cells = (1 << 18) - 2;  // along each axis, either way
 
 float distance_outside(const Bounds3& box, Vec3 p) {
-    const auto axis = [](float lower, float upper, float x) { return std::max({lower - x, x - upper, 0.0f}); };
+    const auto axis = [](float lower, float upper, float x) {
+        return std::max({lower - x, x - upper, 0.0f});
+    };
     return length({axis(box.lower.x, box.upper.x, p.x), axis(box.lower.y, box.upper.y, p.y),
                    axis(box.lower.z, box.upper.z, p.z)});
 }
@@ -36,14 +38,16 @@ FieldCells::FieldCells(const CellScale& scale) : scale_(scale), slots_(1 << 12) 
 FieldCells::Index FieldCells::index_of(Vec3 p, int level) const {
     const float inverse = 1 / scale_.size_of(level);
     const auto cell = [&](float x) {
-        return static_cast<std::int32_t>(std::clamp(std::floor(x * inverse), static_cast<float>(-most_cells), static_cast<float>(most_cells)));
+        return static_cast<std::int32_t>(std::clamp(std::floor(x * inverse), static_cast<float>(-most_cells),
+                                                    static_cast<float>(most_cells)));
     };
     return {cell(p.x), cell(p.y), cell(p.z), level};
 }
 
 std::uint64_t FieldCells::key_of(const Index& i) {
     const auto bits = [](std::int32_t x) { return static_cast<std::uint64_t>(x + most_cells) & 0x7ffff; };
-    return bits(i.x) << 44 | bits(i.y) << 25 | bits(i.z) << 6 | static_cast<std::uint64_t>(i.level - coarsest + coarser + 1);
+    return bits(i.x) << 44 | bits(i.y) << 25 | bits(i.z) << 6
+           | static_cast<std::uint64_t>(i.level - coarsest + coarser + 1);
 }
 
 std::size_t FieldCells::slot_of(std::uint64_t key) const {
@@ -134,7 +138,8 @@ bool FieldCells::in_cell_of(const FieldElement& e, Vec3 position) const {
 
 Vec3 FieldCells::middle_of(const FieldElement& e) const {
     const Index i = index_of(e.position, e.level);
-    return Vec3{static_cast<float>(i.x) + 0.5f, static_cast<float>(i.y) + 0.5f, static_cast<float>(i.z) + 0.5f}
+    return Vec3{static_cast<float>(i.x) + 0.5f, static_cast<float>(i.y) + 0.5f,
+                static_cast<float>(i.z) + 0.5f}
            * e.size;
 }
 

@@ -38,8 +38,8 @@ struct FieldElement {
     IrradianceVector irradiance;
 };
 
-/// Sizes of cells by place: the smallest whole-number multiple of octaves of `size` that grows with the distance from
-/// a core.
+/// Sizes of cells by place: the smallest whole-number multiple of octaves of `size` that grows with the
+/// distance from a core.
 struct CellScale {
     float size = 0.1f;  // metres, inside the core
     Bounds3 core;
@@ -79,8 +79,8 @@ class FieldCells {
         for (std::int32_t dz = -1; dz <= 1; ++dz)
             for (std::int32_t dy = -1; dy <= 1; ++dy)
                 for (std::int32_t dx = -1; dx <= 1; ++dx)
-                    for (ElementId e = first_in({home.x + dx, home.y + dy, home.z + dz, level}); e != no_element;
-                         e = next_[e])
+                    for (ElementId e = first_in({home.x + dx, home.y + dy, home.z + dz, level});
+                         e != no_element; e = next_[e])
                         use(e);
     }
 
@@ -103,7 +103,9 @@ class FieldCells {
     [[nodiscard]] Index index_of(Vec3 position, int level) const;
     [[nodiscard]] static std::uint64_t key_of(const Index& index);
     [[nodiscard]] std::size_t slot_of(std::uint64_t key) const;
-    [[nodiscard]] ElementId first_in(const Index& index) const { return slots_[slot_of(key_of(index))].first; }
+    [[nodiscard]] ElementId first_in(const Index& index) const {
+        return slots_[slot_of(key_of(index))].first;
+    }
     [[nodiscard]] ElementId match(const Index& index, Vec3 position, Vec3 normal) const;
     [[nodiscard]] Place locate(Vec3 position, Vec3 normal) const;
     ElementId make(Vec3 position, Vec3 normal, float offset, int level);

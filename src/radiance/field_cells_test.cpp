@@ -84,10 +84,12 @@ TEST(FieldCells, ManyCellsAreAllFoundAgain) {
     FieldCells cells(scale());
     std::vector<ElementId> made;
     const auto place = [](int i) {
-        return Vec3{0.1f * static_cast<float>(i % 100) + 0.05f, 0.05f, 0.1f * static_cast<float>(i / 100) + 0.05f};
+        return Vec3{0.1f * static_cast<float>(i % 100) + 0.05f, 0.05f,
+                    0.1f * static_cast<float>(i / 100) + 0.05f};
     };
     for (int i = 0; i < 10'000; ++i) made.push_back(cells.find_or_make_fine(place(i) * 0.09f, up, 0));
-    for (int i = 0; i < 10'000; ++i) EXPECT_EQ(cells.find(place(i) * 0.09f, up), made[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 10'000; ++i)
+        EXPECT_EQ(cells.find(place(i) * 0.09f, up), made[static_cast<std::size_t>(i)]);
 }
 
 TEST(IrradianceVector, IsExactForTheNormalThatItWasMeasuredWith) {

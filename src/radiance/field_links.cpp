@@ -23,7 +23,8 @@ Spectrum gathered(const FieldLinks& links, std::size_t element, std::span<const 
 
 double total(std::span<const Spectrum> values) {
     double sum = 0;
-    for (const Spectrum& s : values) sum += std::abs(double{s.r}) + std::abs(double{s.g}) + std::abs(double{s.b});
+    for (const Spectrum& s : values)
+        sum += std::abs(double{s.r}) + std::abs(double{s.g}) + std::abs(double{s.b});
     return sum;
 }
 
@@ -44,7 +45,9 @@ Link make_link(ElementId to, std::uint16_t ray, std::uint16_t direction, Spectru
 }
 
 std::uint16_t pack_direction(LocalDir w) {
-    const auto byte = [](float x) { return static_cast<unsigned>(std::clamp(127.5f * x + 128, 0.0f, 255.0f)); };
+    const auto byte = [](float x) {
+        return static_cast<unsigned>(std::clamp(127.5f * x + 128, 0.0f, 255.0f));
+    };
     return static_cast<std::uint16_t>(byte(w.v.x) | byte(w.v.y) << 8);
 }
 
@@ -54,8 +57,8 @@ LocalDir unpack_direction(std::uint16_t packed) {
     return {normalize({x, y, std::sqrt(std::max(0.0f, 1 - x * x - y * y))})};
 }
 
-std::size_t iterate(const FieldLinks& links, std::span<const Spectrum> light, float share, std::uint32_t bounces,
-                    int threads, std::vector<Spectrum>& irradiance) {
+std::size_t iterate(const FieldLinks& links, std::span<const Spectrum> light, float share,
+                    std::uint32_t bounces, int threads, std::vector<Spectrum>& irradiance) {
     irradiance.assign(light.begin(), light.end());
     std::vector<Spectrum> arriving(light.begin(), light.end()), next(light.size());
     double before = total(arriving);

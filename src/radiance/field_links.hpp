@@ -14,8 +14,8 @@ namespace relumine {
 /// One ray of an element and the element that it has met.
 struct Link {
     ElementId to = 0;
-    std::uint16_t ray = 0;        // of the element that it belongs to
-    std::uint16_t direction = 0;  // that it arrives from, see pack_direction
+    std::uint16_t ray = 0;                      // of the element that it belongs to
+    std::uint16_t direction = 0;                // that it arrives from, see pack_direction
     std::array<std::uint16_t, 3> throughput{};  // in units of 1 / 1024, rounded up or down by chance
 
     [[nodiscard]] Spectrum value() const;
@@ -37,9 +37,10 @@ struct FieldLinks {
     void end_element() { first.push_back(links.size()); }
 };
 
-/// Irradiance after `bounces` further reflections, or until it no longer changes (0.01 %). `share`: one over the rays of
-/// an element. `light`: what arrives straight from lights. Returns how many reflections were computed.
-std::size_t iterate(const FieldLinks& links, std::span<const Spectrum> light, float share, std::uint32_t bounces,
-                    int threads, std::vector<Spectrum>& irradiance);
+/// Irradiance after `bounces` further reflections, or until it no longer changes (0.01 %). `share`: one over
+/// the rays of an element. `light`: what arrives straight from lights. Returns how many reflections were
+/// computed.
+std::size_t iterate(const FieldLinks& links, std::span<const Spectrum> light, float share,
+                    std::uint32_t bounces, int threads, std::vector<Spectrum>& irradiance);
 
 }  // namespace relumine

@@ -16,7 +16,7 @@ constexpr float lift = 0.05f;         // of the ray that asks for the way, of th
 constexpr float own_weight = 1e-4f;   // so that there is always some
 /// What a first-order irradiance vector is trusted with, of the irradiance that was measured.
 constexpr float most_tilted = 2;
-constexpr std::size_t run = 256;      // elements of a piece of work
+constexpr std::size_t run = 256;  // elements of a piece of work
 
 struct Candidate {
     float distance2;
@@ -63,8 +63,8 @@ FieldNeighbors::List find_neighbors(const Transport& t, const FieldCells& cells,
     return list;
 }
 
-/// 1 at the element, 0 from its size on along any axis of the world; a partition of unity where elements lie on
-/// a grid.
+/// 1 at the element, 0 from its size on along any axis of the world; a partition of unity where elements lie
+/// on a grid.
 float tent(const FieldElement& e, Vec3 position) {
     Vec3 way = position - e.position;
     way = (way - e.normal * dot(way, e.normal)) / e.size;
@@ -86,7 +86,8 @@ FieldNeighbors::FieldNeighbors(const Transport& t, const FieldCells& cells, int 
     });
 }
 
-Spectrum FieldNeighbors::irradiance(const FieldCells& cells, ElementId home, Vec3 position, Vec3 normal) const {
+Spectrum FieldNeighbors::irradiance(const FieldCells& cells, ElementId home, Vec3 position,
+                                    Vec3 normal) const {
     Spectrum tilted, straight;
     float weights = 0;
     const auto add = [&](const FieldElement& e, float weight) {
@@ -105,7 +106,8 @@ Spectrum FieldNeighbors::irradiance(const FieldCells& cells, ElementId home, Vec
     const auto limited = [&](float x, float measured) {
         return std::clamp(x, 0.0f, most_tilted * std::max(measured, 0.0f));
     };
-    return Spectrum{limited(tilted.r, straight.r), limited(tilted.g, straight.g), limited(tilted.b, straight.b)}
+    return Spectrum{limited(tilted.r, straight.r), limited(tilted.g, straight.g),
+                    limited(tilted.b, straight.b)}
            * (1 / weights);
 }
 

@@ -21,9 +21,10 @@ class FieldNeighbors {
     FieldNeighbors() = default;
     FieldNeighbors(const Transport& t, const FieldCells& cells, int threads, RayCounts& rays);
 
-    /// Irradiance on a surface of this (shading) normal at a point for which `home` stands, by tents as large as the
-    /// elements.
-    [[nodiscard]] Spectrum irradiance(const FieldCells& cells, ElementId home, Vec3 position, Vec3 normal) const;
+    /// Irradiance on a surface of this (shading) normal at a point for which `home` stands, by tents as large
+    /// as the elements.
+    [[nodiscard]] Spectrum irradiance(const FieldCells& cells, ElementId home, Vec3 position,
+                                      Vec3 normal) const;
 
     [[nodiscard]] const List& of(ElementId element) const { return lists_[element]; }
     [[nodiscard]] std::size_t bytes() const { return lists_.capacity() * sizeof(List); }

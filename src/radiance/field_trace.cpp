@@ -104,9 +104,11 @@ class ElementTracer {
         for (std::size_t lane = 0; lane < packet_size; ++lane) {
             const int i = first + static_cast<int>(lane);
             const StartPoint& p = points_[point_of(points_, i, settings_.rays)];
-            streams[lane] = element_stream(settings_.seed, id_, static_cast<std::uint32_t>(i), settings_.rays);
+            streams[lane] =
+                element_stream(settings_.seed, id_, static_cast<std::uint32_t>(i), settings_.rays);
             const WorldDir direction = cosine_direction(p.normal, streams[lane]);
-            rays[lane] = {p.position + p.normal * p.offset, direction, infinity, streams[lane].bits(Dim::opacity, 2)};
+            rays[lane] = {p.position + p.normal * p.offset, direction, infinity,
+                          streams[lane].bits(Dim::opacity, 2)};
             starts[lane] = &p;
         }
         counts_.add(RayPurpose::field, packet_size);
@@ -116,17 +118,18 @@ class ElementTracer {
     }
 
     void follow(const StartPoint& start, const Ray& ray, const Hit& hit, const SampleStream& stream) {
-        const PathState path{ray, hit, 1, 1, Spectrum{1}, 1, 0, false, static_cast<bool>(hit)};
+        PathState path{ray, hit, 1, 1, Spectrum{1}, 1, 0, false, static_cast<bool>(hit)};
+        tint(t_, path);
         const Vec3 direction = turned(ray.direction.v, start.normal, normal_);
-        Spectrum found = first_emission(t_, path);
+        Spectrum found = path.throughput * first_emission(t_, path);
         if (!is_black(found)) found *= share_of_light(start, path);
         if (hit) {
             log_distances_ += std::log(std::max(hit.t, least_distance));
             ++seen_;
             walk_lobes(t_, path, {}, stream, found, counts_, [&](const DiffuseVertex& at) {
                 const SurfacePoint& p = at.vertex.point;
-                view_.landings.push_back({p.position, p.geometric_normal, p.offset, hit.t, at.weight, direction,
-                                          static_cast<std::uint16_t>(stream.index)});
+                view_.landings.push_back({p.position, p.geometric_normal, p.offset, hit.t, at.weight,
+                                          direction, static_cast<std::uint16_t>(stream.index)});
                 return true;
             });
         }
@@ -136,15 +139,17 @@ class ElementTracer {
 
     /// The balance heuristic against light samples.
     [[nodiscard]] float share_of_light(const StartPoint& start, const PathState& path) const {
-        const float here = static_cast<float>(settings_.rays) * inv_pi * dot(path.ray.direction.v, start.normal);
+        const float here =
+            static_cast<float>(settings_.rays) * inv_pi * dot(path.ray.direction.v, start.normal);
         return here / (here + static_cast<float>(settings_.light_samples) * light_density(t_, path));
     }
 
     void sample_lights() {
         if (t_.lights.empty()) return;
         for (int i = 0; i < settings_.light_samples; ++i) {
-            const SampleStream stream = element_stream(hash(settings_.seed, 0x6c6967687473), id_,
-                                                       static_cast<std::uint32_t>(i), settings_.light_samples);
+            const SampleStream stream =
+                element_stream(hash(settings_.seed, 0x6c6967687473), id_, static_cast<std::uint32_t>(i),
+                               settings_.light_samples);
             sample_light(points_[point_of(points_, i, settings_.light_samples)], stream);
         }
     }
@@ -158,10 +163,13 @@ class ElementTracer {
         p.position = start.position;
         p.geometric_normal = start.normal;
         p.offset = start.offset;
-        if (in_shadow(t_, p, *light, stream.bits(Dim::opacity, 1), counts_)) return;
+        const Spectrum passed = passed_light(t_, p, *light, stream.bits(Dim::opacity, 1), counts_);
+        if (is_black(passed)) return;
         const float here = static_cast<float>(settings_.light_samples) * light->pdf;
-        const float density = light->delta ? here : here + static_cast<float>(settings_.rays) * inv_pi * cosine;
-        add_arriving(view_.light, normal_, turned(light->w_in.v, start.normal, normal_), light->radiance * (cosine / density));
+        const float density =
+            light->delta ? here : here + static_cast<float>(settings_.rays) * inv_pi * cosine;
+        add_arriving(view_.light, normal_, turned(light->w_in.v, start.normal, normal_),
+                     passed * light->radiance * (cosine / density));
     }
 
     const Transport& t_;
@@ -198,8 +206,8 @@ void center(const Transport& t, const FieldCells& cells, FieldElement& e, RayCou
     }
 }
 
-std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id, std::uint64_t seed,
-                                     RayCounts& rays) {
+std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id,
+                                     std::uint64_t seed, RayCounts& rays) {
     constexpr std::uint32_t tries = 16;
     constexpr float reach = 1.42f;  // of a square that contains the cell's section with any plane
     const FieldElement& e = cells.elements()[id];
@@ -207,7 +215,8 @@ std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells
     const Vec3 middle = cells.middle_of(e);
     std::vector<StartPoint> points;
     for (std::uint32_t i = 0; i < tries; ++i) {
-        const Point2 u = SampleStream{hash(seed, id, 0x706f696e7473), i, tries, PointSet::sobol}.next2(Dim::pixel);
+        const Point2 u =
+            SampleStream{hash(seed, id, 0x706f696e7473), i, tries, PointSet::sobol}.next2(Dim::pixel);
         const Vec3 target = middle + (frame.s * (u.x - 0.5f) + frame.t * (u.y - 0.5f)) * (reach * e.size);
         if (const auto p = surface_near(t, cells, e, target, rays))
             points.push_back({p->position, p->geometric_normal, p->offset});
@@ -238,14 +247,16 @@ class Guide {
                 element_stream(settings_.seed, id_, static_cast<std::uint32_t>(i), settings_.rays);
             view_.share.push_back(share(p, cosine_direction(points_[p].normal, stream)));
         }
-        for (int first = 0; first < settings_.guided_rays; first += static_cast<int>(packet_size)) trace(first);
+        for (int first = 0; first < settings_.guided_rays; first += static_cast<int>(packet_size))
+            trace(first);
         return std::move(view_);
     }
 
   private:
     /// What a ray that way counts for, over what it would alone, if drawn by its cosine.
     [[nodiscard]] float share(std::size_t point, WorldDir direction) const {
-        const float here = static_cast<float>(settings_.rays) * inv_pi * dot(direction.v, points_[point].normal);
+        const float here =
+            static_cast<float>(settings_.rays) * inv_pi * dot(direction.v, points_[point].normal);
         const BrightCones::Table& table = tables_[point];
         return here / (here + static_cast<float>(settings_.guided_rays) * pdf(table, direction));
     }
@@ -277,15 +288,17 @@ class Guide {
 
     void follow(int i, const Ray& ray, const Hit& hit) {
         const std::size_t p = point_of(points_, i, settings_.guided_rays);
-        // A ray of either kind brings L · cos θ / (n p_cos + m p_guide); links count it in units of L · π / n.
+        // A ray of either kind brings L · cos θ / (n p_cos + m p_guide); links count it in units of L · π /
+        // n.
         const float weight = share(p, ray.direction);
         const Vec3 direction = turned(ray.direction.v, points_[p].normal, normal_);
         Spectrum found;  // the rays of trace_element bring that
-        const PathState path{ray, hit, 1, 1, Spectrum{1}, 1, 0, false, true};
+        PathState path{ray, hit, 1, 1, Spectrum{1}, 1, 0, false, true};
+        tint(t_, path);
         walk_lobes(t_, path, {}, stream_of(i), found, counts_, [&](const DiffuseVertex& at) {
             const SurfacePoint& s = at.vertex.point;
-            view_.landings.push_back({s.position, s.geometric_normal, s.offset, hit.t, at.weight * weight, direction,
-                                      static_cast<std::uint16_t>(settings_.rays + i)});
+            view_.landings.push_back({s.position, s.geometric_normal, s.offset, hit.t, at.weight * weight,
+                                      direction, static_cast<std::uint16_t>(settings_.rays + i)});
             return true;
         });
     }
@@ -303,7 +316,8 @@ class Guide {
 }  // namespace
 
 GuidedView guide_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
-                         const BrightCones& cones, ElementId id, const FieldSettings& settings, RayCounts& rays) {
+                         const BrightCones& cones, ElementId id, const FieldSettings& settings,
+                         RayCounts& rays) {
     return Guide(t, normal, points, cones, id, settings, rays).run();
 }
 

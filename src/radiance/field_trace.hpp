@@ -16,15 +16,15 @@ struct Landing {
     float offset = 0;
     float distance = 0;   // metres, to the first surface that the ray has met
     Spectrum throughput;  // from the irradiance there, over π, to the radiance of the ray
-    Vec3 direction;       // unit: of the ray, turned as the surface where it starts is turned from the element
+    Vec3 direction;  // unit: of the ray, turned as the surface where it starts is turned from the element
     std::uint16_t ray = 0;
 };
 
 /// What an element's rays have found.
 struct ElementView {
-    std::vector<Landing> landings;       // in order of rays
-    IrradianceVector light;              // what arrives straight from lights or through lobes alone
-    float distance = infinity;           // metres, the geometric mean of what is seen
+    std::vector<Landing> landings;  // in order of rays
+    IrradianceVector light;         // what arrives straight from lights or through lobes alone
+    float distance = infinity;      // metres, the geometric mean of what is seen
 };
 
 /// The random numbers of a ray.
@@ -46,7 +46,8 @@ struct StartPoint {
 /// Moves an element towards the middle of what its cell holds of the surface, as far as it sees the way.
 void center(const Transport& t, const FieldCells& cells, FieldElement& element, RayCounts& rays);
 
-/// Traces rays over the hemispheres of `points` and samples the lights from there, for an element of this normal.
+/// Traces rays over the hemispheres of `points` and samples the lights from there, for an element of this
+/// normal.
 [[nodiscard]] ElementView trace_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
                                         ElementId id, const FieldSettings& settings, RayCounts& rays);
 

@@ -15,7 +15,7 @@ bool may_emit(const Transport& t, const Hit& hit) {
 }
 
 Spectrum emission_met(const Transport& t, PathState path, const SampleStream& stream) {
-    if (!path.hit) return arriving_emission(t, path, nullptr);
+    if (!path.hit) return path.throughput * arriving_emission(t, path, nullptr);
     if (!may_emit(t, path.hit)) return {};
     const Vertex y = make_vertex(t, path, stream);  // attenuates its copy of the path
     return path.throughput * arriving_emission(t, path, &y.point);
@@ -52,6 +52,7 @@ RadiancePacket incident_radiance(const IncidentRadiance& source, const std::arra
     for (std::size_t i = 0; i < packet_size; ++i) {
         paths[i] = {rays[i], hits[i], depth, 1, Spectrum{1}, 1, 0, false, rays[i].t_max >= 0};
         if (!paths[i].alive) continue;
+        tint(source.transport, paths[i]);
         sums[i].direct = emission_met(source.transport, paths[i], streams[i]);
         paths[i].alive = hits[i] && depth < limit;
     }

@@ -10,8 +10,8 @@ namespace relumine {
 WalkChoice choose(const Vertex& vertex, Spectrum throughput, int rough_so_far, const LobeWalk& settings) {
     const LobeSplit split = split_lobes(vertex.bsdf, vertex.w_out);
     if (split.transmits) return {{}, split.lobes, 1, split.alpha == 0};
-    const bool follow = split.lobes && split.alpha < rough_alpha
-                        && (split.alpha == 0 || rough_so_far < settings.most_rough);
+    const bool follow =
+        split.lobes && split.alpha < rough_alpha && (split.alpha == 0 || rough_so_far < settings.most_rough);
     if (!follow) return {split.diffuse + split.glossy, {}, 0, false};
     // A lobe on its own is followed as it is; beside a diffuse part, as far as it matters.
     const float kept = settings.eagerness * max_component(throughput * split.glossy);
@@ -25,13 +25,14 @@ void step_along(const Transport& t, PathState& path, const Vertex& vertex, const
                             stream.bits(Dim::opacity, 2 * path.depth + 1)};
         if (const auto light = propose_direct_light(t, vertex, u)) {
             rays.add(RayPurpose::shadow);
-            if (!t.tracer.occluded(light->shadow_ray)) found += path.throughput * light->reflected;
+            found += path.throughput * light->reflected * t.tracer.passed_light(light->shadow_ray);
         }
     }
     scatter_path(path, vertex, stream);
     if (!path.alive) return;
     rays.add(RayPurpose::bounce);
     path.hit = t.tracer.closest_hit(path.ray);
+    tint(t, path);
 }
 
 }  // namespace relumine

@@ -12,8 +12,9 @@ inline constexpr float rough_alpha = 0.4f;
 /// How far lobes are followed.
 struct LobeWalk {
     std::uint32_t max_depth = unlimited_depth;  // scattering vertices of a whole path
-    int most_rough = 3;                         // of reflections at lobes that are no deltas; further ones count as diffuse
-    float eagerness = 4;  // a lobe that keeps the share a of the light is followed with probability eagerness · a
+    int most_rough = 3;  // of reflections at lobes that are no deltas; further ones count as diffuse
+    float eagerness =
+        4;  // a lobe that keeps the share a of the light is followed with probability eagerness · a
 };
 
 /// Where a part of a path's light comes from a surface that reflects diffusely.
@@ -56,7 +57,8 @@ void walk_lobes(const Transport& t, PathState path, const LobeWalk& settings, co
         if (path.count_emission) found += path.throughput * arriving_emission(t, path, &vertex.point);
         if (path.depth >= settings.max_depth) return;
         const WalkChoice choice = choose(vertex, path.throughput, rough, settings);
-        const bool known = is_black(choice.diffuse) || use(DiffuseVertex{vertex, path.throughput * choice.diffuse});
+        const bool known =
+            is_black(choice.diffuse) || use(DiffuseVertex{vertex, path.throughput * choice.diffuse});
         if (known) {
             if (!choice.follow || stream.next1(Dim::roulette, path.depth) >= choice.probability) return;
             path.throughput *= 1 / choice.probability;

@@ -42,7 +42,10 @@ Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stre
         vertex.bsdf = *uniform;
     } else {
         const float u = p.material->transmission > 0 ? stream.next1(Dim::blend, path.depth) : 0.0f;
-        vertex.bsdf = make_bsdf(t.scene, p, t.masking, u);
+        const Mesh& mesh = t.scene.meshes[index(t.scene.instances[p.instance].mesh)];
+        vertex.bsdf = t.tracer.has_panes() && pane_kind(t.scene, mesh) != Pane::none
+                          ? make_pane_bsdf(t.scene, path.hit, p, vertex.w_out, t.masking, u)
+                          : make_bsdf(t.scene, p, t.masking, u);
     }
     return vertex;
 }

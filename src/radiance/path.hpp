@@ -47,6 +47,11 @@ inline constexpr std::size_t batch_packets = 8;
 void path_radiance(const Transport& t, std::span<const PathPacket> paths, std::uint32_t max_depth,
                    std::span<const StreamPacket> streams, std::span<RadiancePacket> sums, RayCounts& rays);
 
+/// Gives the throughput the colour of the panes that the path's ray has passed on the way to its hit.
+inline void tint(const Transport& t, PathState& path) {
+    if (t.tracer.has_coloured_panes()) path.throughput *= t.tracer.tint(path.ray, path.hit.t);
+}
+
 /// The vertex where the path's ray has hit; attenuates the throughput where the ray went through a solid.
 [[nodiscard]] Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stream);
 

@@ -85,8 +85,10 @@ class PathBatch {
     void add_emission(const WalkPacket& packet, std::size_t lane, const SurfacePoint* hit_point);
     void enqueue_shadows(const WalkPacket& packet);
     void add_unshadowed();
+    void add_passed(std::size_t active);
     void close_ranks();
     void trace_bounces(WalkPacket& packet);
+    void tint_bounces(PathLanes& paths) const;
 
     const Transport& t_;
     const std::uint32_t max_depth_;
@@ -232,14 +234,26 @@ void PathBatch::add_unshadowed() {
     const std::size_t active = queue_.size;
     ShadowLanes& shadows = queue_.lanes;
     rays_.add(RayPurpose::shadow, active);
-    LaneMask blocked;
     for (std::size_t i = active; i < packet_size; ++i) shadows.rays.t_max[i] = -1;
+    queue_.size = 0;
+    if (t_.tracer.has_panes()) return add_passed(active);
+    LaneMask blocked;
     if (active >= least_packet) t_.tracer.occluded(shadows.rays, blocked);
     for (std::size_t i = 0; i < active; ++i) {
         if (active < least_packet) blocked[i] = t_.tracer.occluded(shadows.rays[i]) ? -1 : 0;
         if (blocked[i] == 0) add(sum_of(queue_.ids[i]), shadows.scatterings[i], shadows.radiance[i]);
     }
-    queue_.size = 0;
+}
+
+/// The same with panes in the scene.
+void PathBatch::add_passed(std::size_t active) {
+    const ShadowLanes& shadows = queue_.lanes;
+    SpectrumLanes passed;
+    if (active >= least_packet) t_.tracer.passed_light(shadows.rays, passed);
+    for (std::size_t i = 0; i < active; ++i) {
+        if (active < least_packet) passed.set(i, t_.tracer.passed_light(shadows.rays[i]));
+        add(sum_of(queue_.ids[i]), shadows.scatterings[i], shadows.radiance[i] * passed[i]);
+    }
 }
 
 /// Where that saves packets, moves the last living paths into the places of those that have ended.
@@ -270,9 +284,21 @@ void PathBatch::trace_bounces(WalkPacket& packet) {
         active += paths.alive[i] != 0 ? 1 : 0;
     }
     rays_.add(RayPurpose::bounce, active);
-    if (active >= least_packet) return t_.tracer.closest_hits(paths.ray, paths.hit, Coherence::incoherent);
-    for (std::size_t i = 0; i < packet_size; ++i)
-        if (paths.alive[i] != 0) paths.hit.set(i, t_.tracer.closest_hit(paths.ray[i]));
+    if (active >= least_packet)
+        t_.tracer.closest_hits(paths.ray, paths.hit, Coherence::incoherent);
+    else
+        for (std::size_t i = 0; i < packet_size; ++i)
+            if (paths.alive[i] != 0) paths.hit.set(i, t_.tracer.closest_hit(paths.ray[i]));
+    if (t_.tracer.has_coloured_panes()) tint_bounces(paths);
+}
+
+/// Gives the paths the colours of the panes that their rays have passed.
+void PathBatch::tint_bounces(PathLanes& paths) const {
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        if (paths.alive[i] == 0) continue;
+        const float t = paths.hit.instance[i] == no_instance ? infinity : paths.hit.t[i];
+        paths.throughput.set(i, paths.throughput[i] * t_.tracer.tint(paths.ray[i], t));
+    }
 }
 
 }  // namespace

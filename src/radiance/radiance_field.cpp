@@ -11,9 +11,9 @@
 namespace relumine {
 namespace {
 
-constexpr std::uint32_t seed_rays = 16;     // that a seed traces each time
-constexpr std::uint32_t seed_rounds = 4;    // later ones find what cells were divided into
-constexpr std::size_t generation = 1024;    // elements whose rays are traced before their links are made
+constexpr std::uint32_t seed_rays = 16;   // that a seed traces each time
+constexpr std::uint32_t seed_rounds = 4;  // later ones find what cells were divided into
+constexpr std::size_t generation = 1024;  // elements whose rays are traced before their links are made
 
 constexpr float bright_factor = 4;          // radiosity of bright elements over the mean
 constexpr float least_bright_share = 0.1f;  // of all power, that is worth sampling apart
@@ -46,7 +46,8 @@ Bounds3 core_of(const std::vector<Landing>& landings) {
 
 class FieldBuilder {
   public:
-    FieldBuilder(const Transport& t, std::span<const FieldSeed> seeds, const FieldSettings& settings, RayCounts& rays)
+    FieldBuilder(const Transport& t, std::span<const FieldSeed> seeds, const FieldSettings& settings,
+                 RayCounts& rays)
         : t_(t), seeds_(seeds), settings_(settings), counts_(rays) {}
 
     FieldCells run(FieldFigures& figures, BrightCones& cones, float& mean_radiance) {
@@ -67,7 +68,8 @@ class FieldBuilder {
         add_links_to_vectors();
         figures.elements = cells.elements().size();
         figures.links = links_.links.size();
-        figures.unresolved = static_cast<double>(unresolved_) / std::max<double>(1, static_cast<double>(links_.links.size() + unresolved_));
+        figures.unresolved = static_cast<double>(unresolved_)
+                             / std::max<double>(1, static_cast<double>(links_.links.size() + unresolved_));
         cones = std::move(cones_);
         mean_radiance = mean_radiance_;
         return cells;
@@ -99,7 +101,8 @@ class FieldBuilder {
         in_parallel(seeds_.size(), [&](std::size_t i, RayCounts& counts) {
             if (stopped()) return;
             const StartPoint from{seeds_[i].position, seeds_[i].normal, seeds_[i].offset};
-            found[i] = trace_element(t_, from.normal, {&from, 1}, static_cast<ElementId>(i), few, counts).landings;
+            found[i] =
+                trace_element(t_, from.normal, {&from, 1}, static_cast<ElementId>(i), few, counts).landings;
         });
         std::vector<Landing> all;
         for (const auto& landings : found) all.insert(all.end(), landings.begin(), landings.end());
@@ -145,10 +148,12 @@ class FieldBuilder {
     void add_links(FieldLinks& links, std::size_t from, const std::vector<Landing>& landings, bool may_make) {
         const Frame frame = frame_around(cells_->elements()[from].normal);
         for (const Landing& l : landings) {
-            const ElementId to = may_make && !full() ? cells_->find_or_make_coarse(l.position, l.normal, l.offset)
-                                                     : cells_->find(l.position, l.normal);
+            const ElementId to = may_make && !full()
+                                     ? cells_->find_or_make_coarse(l.position, l.normal, l.offset)
+                                     : cells_->find(l.position, l.normal);
             if (to != no_element)
-                links.links.push_back(make_link(to, l.ray, pack_direction(frame.to_local({l.direction})), l.throughput));
+                links.links.push_back(
+                    make_link(to, l.ray, pack_direction(frame.to_local({l.direction})), l.throughput));
             else
                 ++unresolved_;
         }
@@ -167,7 +172,8 @@ class FieldBuilder {
     }
 
     std::size_t reflect() {
-        return iterate(links_, light_along_normals(), share(), settings_.bounces, settings_.threads, irradiance_);
+        return iterate(links_, light_along_normals(), share(), settings_.bounces, settings_.threads,
+                       irradiance_);
     }
 
     /// Marks the few elements that reflect much more than others, if together they reflect much.
@@ -182,7 +188,7 @@ class FieldBuilder {
             area += sqr(elements[i].size);
         }
         mean_radiance_ = area > 0 ? static_cast<float>(power / area) * inv_pi : 0;
-        const auto is_bright = [&](std::size_t i) { 
+        const auto is_bright = [&](std::size_t i) {
             return !elements[i].coarse && radiosity[i] * area > bright_factor * power;
         };
         for (std::size_t i = 0; i < elements.size(); ++i)
@@ -214,11 +220,13 @@ class FieldBuilder {
             in_parallel(count, [&](std::size_t i, RayCounts& counts) {
                 const auto id = static_cast<ElementId>(first + i);
                 const std::vector<StartPoint> points = start_points(t_, *cells_, id, settings_.seed, counts);
-                views[i] = guide_element(t_, cells_->elements()[id].normal, points, cones_, id, settings_, counts);
+                views[i] =
+                    guide_element(t_, cells_->elements()[id].normal, points, cones_, id, settings_, counts);
             });
             for (std::size_t i = 0; i < count; ++i) {
                 for (const Link& l : links_.of(first + i))
-                    guided.links.push_back(make_link(l.to, l.ray, l.direction, l.value() * views[i].share[l.ray]));
+                    guided.links.push_back(
+                        make_link(l.to, l.ray, l.direction, l.value() * views[i].share[l.ray]));
                 add_links(guided, first + i, views[i].landings, false);
                 guided.end_element();
             }
@@ -268,8 +276,8 @@ class FieldBuilder {
 
 }  // namespace
 
-RadianceField::RadianceField(const Transport& t, std::span<const FieldSeed> seeds, const FieldSettings& settings,
-                             RayCounts& rays)
+RadianceField::RadianceField(const Transport& t, std::span<const FieldSeed> seeds,
+                             const FieldSettings& settings, RayCounts& rays)
     : cells_(FieldBuilder(t, seeds, settings, rays).run(figures_, cones_, mean_radiance_)),
       neighbors_(t, cells_, settings.threads, rays) {
     figures_.bytes = cells_.bytes() + neighbors_.bytes();

@@ -25,14 +25,16 @@ struct FieldSeed {
 };
 
 struct FieldSettings {
-    float cell = 0.05f;       // the cells' size over the median distance that rays from seeds travel
-    int finest = 2;           // octaves by which cells shrink where surfaces are near each other
-    float divide_above = 0.15f;  // cells shrink where their size exceeds this share of how far what they see is
-    int rays = 128;           // that each element traces over its hemisphere; a multiple of 16
-    int guided_rays = 32;     // to bright elements, besides; likewise
-    int light_samples = 64;   // likewise
+    float cell = 0.05f;  // the cells' size over the median distance that rays from seeds travel
+    int finest = 2;      // octaves by which cells shrink where surfaces are near each other
+    float divide_above =
+        0.15f;               // cells shrink where their size exceeds this share of how far what they see is
+    int rays = 128;          // that each element traces over its hemisphere; a multiple of 16
+    int guided_rays = 32;    // to bright elements, besides; likewise
+    int light_samples = 64;  // likewise
     std::size_t most_elements = 300'000;
-    std::uint32_t bounces = 0xffffffffu;  // of light, after the one that elements receive straight from lights
+    std::uint32_t bounces =
+        0xffffffffu;  // of light, after the one that elements receive straight from lights
     std::uint64_t seed = 0;
     int threads = 1;
     std::function<bool()> stop;  // asked often; true: come to an end soon. May be empty
@@ -41,9 +43,9 @@ struct FieldSettings {
 /// What building took.
 struct FieldFigures {
     std::size_t elements = 0, links = 0;
-    std::size_t bytes = 0;          // while it is used
+    std::size_t bytes = 0;  // while it is used
     std::size_t iterations = 0;
-    double unresolved = 0;          // share of the links that led nowhere
+    double unresolved = 0;  // share of the links that led nowhere
 };
 
 class RadianceField {
@@ -67,8 +69,8 @@ class RadianceField {
     [[nodiscard]] const FieldCells& cells() const { return cells_; }
 
   private:
-    FieldFigures figures_;  // filled while cells_ is made
-    BrightCones cones_;     // likewise
+    FieldFigures figures_;     // filled while cells_ is made
+    BrightCones cones_;        // likewise
     float mean_radiance_ = 0;  // likewise
     FieldCells cells_;
     FieldNeighbors neighbors_;

@@ -142,4 +142,7 @@ inline bool has_lobes(const Bsdf& bsdf) {
 /// side.
 [[nodiscard]] float fresnel_dielectric(float cosine, float eta);
 
+/// The same of a thin sheet with all its internal reflections.
+[[nodiscard]] float sheet_reflectance(float cosine, float eta);
+
 }  // namespace relumine

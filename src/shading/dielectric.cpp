@@ -7,12 +7,8 @@
 namespace relumine {
 namespace {
 
-/// A sheet's reflectance from its surface's, with all internal reflections: R + T²R / (1 − R²).
-float sheet_reflectance(float surface) { return 2 * surface / (1 + surface); }
-
 float reflectance(float cosine, float eta, bool thin) {
-    const float r = fresnel_dielectric(cosine, thin ? std::max(eta, 1 / eta) : eta);
-    return thin ? sheet_reflectance(r) : r;
+    return thin ? sheet_reflectance(cosine, eta) : fresnel_dielectric(cosine, eta);
 }
 
 /// `w_out` refracted at a facet of normal `m` (on w_out's side); empty at total internal reflection.
@@ -48,6 +44,11 @@ float fresnel_dielectric(float cosine, float eta) {
     const float parallel = (eta * cosine - cos_t) / (eta * cosine + cos_t);
     const float perpendicular = (cosine - eta * cos_t) / (cosine + eta * cos_t);
     return 0.5f * (sqr(parallel) + sqr(perpendicular));
+}
+
+float sheet_reflectance(float cosine, float eta) {
+    const float r = fresnel_dielectric(cosine, std::max(eta, 1 / eta));
+    return 2 * r / (1 + r);  // R + T²R / (1 − R²)
 }
 
 Spectrum eval(const SmoothDielectric&, LocalDir, LocalDir) { return {}; }

@@ -74,12 +74,12 @@ LightSampler::LightSampler(const SceneData& scene, const LightSelection& selecti
     std::vector<double> powers;
     first_triangle_.assign(scene.instances.size(), no_light);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) add_emissive_instance(i, selection, powers);
+    places_ = local_.size();
     if (selection.delta_lights) add_delta_lights(powers);
     double local_power = 0;
     for (const double power : powers) local_power += power;
-    if (local_power > 0) {
-        local_cdf_ = normalised_cdf(powers);
-    }
+    if (local_power > 0) local_cdf_ = normalised_cdf(powers);
+    if (local_power > 0 && places_ >= selection.tree_from) grow_tree(powers);
 
     double environment_power = 0;
     if (scene.environment) {
@@ -98,7 +98,7 @@ LightSampler::LightSampler(const SceneData& scene, const LightSelection& selecti
     for (std::size_t i = 0; i < triangles_.size() && local_power > 0; ++i)
         if (triangles_[i].area > 0)
             triangles_[i].density =
-                local_probability_ * (local_cdf_[i + 1] - local_cdf_[i]) / triangles_[i].area;
+                local_probability_ * (tree_ ? 1 : local_cdf_[i + 1] - local_cdf_[i]) / triangles_[i].area;
 }
 
 void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& selection,
@@ -135,11 +135,47 @@ void LightSampler::add_delta_lights(std::vector<double>& powers) {
         powers.push_back(2 * double{pi} * (1 - 0.5 * (light.cos_inner + light.cos_outer))
                          * mean_of_channels(light.intensity));
     }
+    places_ = local_.size();
     for (std::uint32_t i = 0; i < scene_.directional_lights.size(); ++i) {
         local_.push_back({Kind::directional, i});
         powers.push_back(double{pi} * sqr(scene_.bounds.radius())
                          * mean_of_channels(scene_.directional_lights[i].irradiance));
     }
+}
+
+/// Where a light of this power is, and how it shines.
+LightBounds LightSampler::bounds_of(const LocalLight& light, double power) const {
+    LightBounds b;
+    if (light.kind == Kind::triangle) {
+        const EmissiveTriangle& t = triangles_[light.index];
+        for (const Vec3 corner : {t.corner, t.corner + t.edge1, t.corner + t.edge2}) b.box.add(corner);
+        b.normals = {t.normal, 0};
+        b.spread = 0.5f * pi;
+        b.two_sided = t.double_sided;
+        b.intensity = static_cast<float>(power) * inv_pi * (t.double_sided ? 0.5f : 1.0f);
+    } else if (light.kind == Kind::point) {
+        b.box.add(scene_.point_lights[light.index].position);
+        b.normals = {{0, 0, 1}, pi};
+        b.spread = 0.5f * pi;
+        b.intensity = static_cast<float>(power) * 0.25f * inv_pi;
+    } else {
+        const SpotLight& spot = scene_.spot_lights[light.index];
+        b.box.add(spot.position);
+        b.normals = {spot.direction, 0};
+        b.spread = std::acos(std::clamp(spot.cos_outer, -1.0f, 1.0f));
+        b.intensity = static_cast<float>(mean_of_channels(spot.intensity));
+    }
+    return b;
+}
+
+void LightSampler::grow_tree(const std::vector<double>& powers) {
+    std::vector<LightBounds> bounds;
+    for (std::size_t i = 0; i < places_; ++i) bounds.push_back(bounds_of(local_[i], powers[i]));
+    if (std::ranges::none_of(bounds, [](const LightBounds& b) { return b.intensity > 0; })) return;
+    tree_.emplace(bounds);
+    tree_probability_ = local_.size() == places_
+                            ? 1.0f
+                            : std::clamp(local_cdf_[places_], min_group_share, 1 - min_group_share);
 }
 
 Spectrum LightSampler::emitted(const EmissiveTriangle& light, const Hit& hit) const {
@@ -150,12 +186,13 @@ Spectrum LightSampler::emitted(const EmissiveTriangle& light, const Hit& hit) co
     return material_emission(scene_, material, at.uv) * opacity(scene_, material, at);
 }
 
-void LightSampler::EmissiveTriangle::put(TrianglePointLanes& points, std::size_t lane, Point2 u) const {
+void LightSampler::EmissiveTriangle::put(TrianglePointLanes& points, std::size_t lane, float probability,
+                                         Point2 u) const {
     points.corner.set(lane, corner);
     points.edge1.set(lane, edge1);
     points.edge2.set(lane, edge2);
     points.normal.set(lane, normal);
-    points.density[lane] = density;
+    points.density[lane] = density * probability;
     points.offset[lane] = offset;
     points.radiance.set(lane, radiance);
     points.double_sided[lane] = double_sided ? -1 : 0;
@@ -170,8 +207,8 @@ const LightSampler::EmissiveTriangle* LightSampler::even_triangle(std::size_t ch
     return &triangles_[light.index];
 }
 
-std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle& light, Vec3 from,
-                                                         Point2 u) const {
+std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle& light, float probability,
+                                                         Vec3 from, Point2 u) const {
     const Point2 b = uniform_triangle(u);
     const Vec3 point = light.corner + light.edge1 * b.x + light.edge2 * b.y;
     const Vec3 to_light = point - from;
@@ -179,7 +216,7 @@ std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle&
     const bool front = height < 0;
     if (height == 0 || !(distance2 > 0) || (!front && !light.double_sided)) return {};
     const float distance = std::sqrt(distance2);
-    const float density = solid_angle_density(light.density, distance2, distance, height);
+    const float density = solid_angle_density(light.density * probability, distance2, distance, height);
     if (!(density > 0)) return {};
     return LightSample{{to_light / distance},
                        point + light.normal * (front ? light.offset : -light.offset),
@@ -188,7 +225,7 @@ std::optional<LightSample> LightSampler::sample_triangle(const EmissiveTriangle&
                        density};
 }
 
-std::size_t LightSampler::choose_local(float u) const {
+std::size_t LightSampler::choose_by_power(float u) const {
     // Finds what upper_bound would, without branches that depend on u: they could not be predicted.
     std::size_t first = 0;
     for (std::size_t count = local_.size(); count > 1;) {
@@ -199,16 +236,32 @@ std::size_t LightSampler::choose_local(float u) const {
     return first;
 }
 
-LightSampler::LocalChoice LightSampler::choose_local(Point2 u) const {
-    const float choice = rescale(u.x, environment_probability_, local_probability_);
-    const std::size_t chosen = choose_local(choice);
-    return {chosen, {rescale(choice, local_cdf_[chosen], local_cdf_[chosen + 1] - local_cdf_[chosen]), u.y}};
+std::optional<LightSampler::LocalChoice> LightSampler::choose_local(Vec3 from, float u) const {
+    if (!tree_) {
+        const std::size_t chosen = choose_by_power(u);
+        return LocalChoice{chosen, 1,
+                           rescale(u, local_cdf_[chosen], local_cdf_[chosen + 1] - local_cdf_[chosen])};
+    }
+    if (u < tree_probability_) {
+        const auto drawn = tree_->sample(from, rescale(u, 0, tree_probability_));
+        if (!drawn) return {};
+        return LocalChoice{drawn->light, tree_probability_ * drawn->probability, drawn->u};
+    }
+    const float near = local_cdf_[places_];  // directional lights lie above, by power
+    u = std::min(lerp(near, 1.0f, rescale(u, tree_probability_, 1 - tree_probability_)), 0x1.fffffep-1f);
+    const std::size_t chosen = choose_by_power(u);
+    const float share = local_cdf_[chosen + 1] - local_cdf_[chosen];
+    return LocalChoice{chosen, (1 - tree_probability_) * share / (1 - near),
+                       rescale(u, local_cdf_[chosen], share)};
 }
 
-std::optional<LightSample> LightSampler::sample_local(std::size_t chosen, Vec3 from, Point2 u) const {
-    const LocalLight& light = local_[chosen];
-    if (light.kind == Kind::triangle) return sample_triangle(triangles_[light.index], from, u);
-    const float probability = local_probability_ * (local_cdf_[chosen + 1] - local_cdf_[chosen]);
+std::optional<LightSample> LightSampler::sample_local(const LocalChoice& chosen, Vec3 from, Point2 u) const {
+    const LocalLight& light = local_[chosen.light];
+    if (light.kind == Kind::triangle)
+        return sample_triangle(triangles_[light.index], chosen.probability, from, u);
+    const float probability =
+        local_probability_
+        * (tree_ ? chosen.probability : local_cdf_[chosen.light + 1] - local_cdf_[chosen.light]);
     std::optional<LightSample> sample;
     if (light.kind == Kind::point) sample = light_sample(scene_.point_lights[light.index], from);
     if (light.kind == Kind::spot) sample = light_sample(scene_.spot_lights[light.index], from);
@@ -230,16 +283,16 @@ std::optional<LightSample> LightSampler::sample_environment(Point2 u) const {
 std::optional<LightSample> LightSampler::sample(Vec3 from, float u_choice, Point2 u) const {
     if (u_choice < environment_probability_) return sample_environment(u);
     if (local_probability_ <= 0) return {};
-    return sample_local(choose_local(rescale(u_choice, environment_probability_, local_probability_)), from,
-                        u);
+    const auto chosen = choose_local(from, rescale(u_choice, environment_probability_, local_probability_));
+    return chosen ? sample_local(*chosen, from, u) : std::nullopt;
 }
 
 std::optional<LightSample> LightSampler::sample(Vec3 from, Point2 u) const {
     if (u.x < environment_probability_)
         return sample_environment({rescale(u.x, 0, environment_probability_), u.y});
     if (local_probability_ <= 0) return {};
-    const LocalChoice chosen = choose_local(u);
-    return sample_local(chosen.light, from, chosen.u);
+    const auto chosen = choose_local(from, rescale(u.x, environment_probability_, local_probability_));
+    return chosen ? sample_local(*chosen, from, {chosen->u, u.y}) : std::nullopt;
 }
 
 void LightSampler::sample(const Vec3Lanes& from, const Lanes<float>& u_x, const Lanes<float>& u_y,
@@ -252,14 +305,19 @@ void LightSampler::sample(const Vec3Lanes& from, const Lanes<float>& u_x, const 
         if (lanes[i] == 0) continue;
         const Point2 u{u_x[i], u_y[i]};
         if (u.x >= environment_probability_ && local_probability_ > 0) {
-            const LocalChoice chosen = choose_local(u);
-            if (const EmissiveTriangle* triangle = even_triangle(chosen.light)) {
-                triangle->put(points, i, chosen.u);
+            const auto chosen =
+                choose_local(from[i], rescale(u.x, environment_probability_, local_probability_));
+            if (!chosen) continue;
+            const Point2 left{chosen->u, u.y};
+            if (const EmissiveTriangle* triangle = even_triangle(chosen->light)) {
+                triangle->put(points, i, chosen->probability, left);
                 any_triangle = true;
-                continue;
+            } else if (const auto drawn = sample_local(*chosen, from[i], left)) {
+                samples.set(i, *drawn);
             }
+        } else if (const auto drawn = sample(from[i], u)) {
+            samples.set(i, *drawn);
         }
-        if (const auto drawn = sample(from[i], u)) samples.set(i, *drawn);
     }
     if (any_triangle) sample_triangles(points, from, samples);
 }
@@ -270,7 +328,9 @@ float LightSampler::pdf(Vec3 from, const SurfacePoint& hit) const {
     const EmissiveTriangle& light = triangles_[first + hit.triangle];
     const Vec3 to_light = hit.position - from;
     const float distance2 = length_squared(to_light), height = dot(to_light, light.normal);
-    return height == 0 ? 0.0f : solid_angle_density(light.density, distance2, std::sqrt(distance2), height);
+    if (height == 0) return 0;
+    const float chosen = tree_ ? tree_probability_ * tree_->probability(from, first + hit.triangle) : 1;
+    return solid_angle_density(light.density * chosen, distance2, std::sqrt(distance2), height);
 }
 
 float LightSampler::environment_pdf(WorldDir direction) const {

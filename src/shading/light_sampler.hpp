@@ -9,6 +9,7 @@
 
 #include "base/lanes.hpp"
 #include "shading/environment_light.hpp"
+#include "shading/light_tree.hpp"
 #include "shading/surface_point.hpp"
 
 namespace relumine {
@@ -47,10 +48,12 @@ struct LightSelection {
                           // texel, emitters on average
     bool delta_lights = true;               // point, spot and directional lights are among the choices
     bool compensate_for_mis = true;         // lower the environment's density by its mean [Karlik19]
+    std::size_t tree_from = 17;             // the fewest lights at places that make a tree
     float most_local_threshold = infinity;  // what local emitters must exceed, if less than `threshold`
 };
 
-/// Draws lights by power and points on them uniformly. Immutable.
+/// Draws lights by power, or many by a tree that also looks at where they are, and points on them uniformly.
+/// Immutable.
 class LightSampler {
   public:
     LightSampler(const SceneData& scene, const LightSelection& selection);
@@ -85,13 +88,14 @@ class LightSampler {
         Vec3 corner, edge1, edge2;  // world space
         Vec3 normal;                // unit, front
         float area;                 // metres²
-        float density;              // of its points among all lights', 1/metres²; 0 where it has no area
-        float offset;               // metres along the normal that clear rounding errors
+        float density;  // of its points among all lights', 1/metres²; 0 where it has no area; with a
+                        // tree, if this light were the only local one
+        float offset;   // metres along the normal that clear rounding errors
         std::uint32_t instance, triangle;
         Spectrum radiance;  // where it is the same everywhere
         bool double_sided, varies;
 
-        void put(TrianglePointLanes& points, std::size_t lane, Point2 u) const;
+        void put(TrianglePointLanes& points, std::size_t lane, float probability, Point2 u) const;
     };
     enum class Kind : std::uint8_t { triangle, point, spot, directional };
     struct LocalLight {
@@ -102,18 +106,23 @@ class LightSampler {
     void add_emissive_instance(std::uint32_t instance, const LightSelection& selection,
                                std::vector<double>& powers);
     void add_delta_lights(std::vector<double>& powers);
-    [[nodiscard]] std::optional<LightSample> sample_triangle(const EmissiveTriangle& light, Vec3 from,
-                                                             Point2 u) const;
+    void grow_tree(const std::vector<double>& powers);
+    [[nodiscard]] LightBounds bounds_of(const LocalLight& light, double power) const;
+    [[nodiscard]] std::optional<LightSample> sample_triangle(const EmissiveTriangle& light, float probability,
+                                                             Vec3 from, Point2 u) const;
     [[nodiscard]] std::optional<LightSample> sample_environment(Point2 u) const;
-    /// A light of local_ and a point on it.
+    /// A light of local_ that was drawn.
     struct LocalChoice {
         std::size_t light;
-        Point2 u;
+        float probability;  // among local_ where there is a tree, else 1: the densities have it in them
+        float u;            // what choosing has left
     };
-    [[nodiscard]] std::size_t choose_local(float u) const;  // of local_
-    [[nodiscard]] LocalChoice choose_local(Point2 u) const;
+    [[nodiscard]] std::size_t choose_by_power(float u) const;  // of local_
+    /// Empty where none can shine on `from`.
+    [[nodiscard]] std::optional<LocalChoice> choose_local(Vec3 from, float u) const;
     [[nodiscard]] const EmissiveTriangle* even_triangle(std::size_t chosen) const;  // or null
-    [[nodiscard]] std::optional<LightSample> sample_local(std::size_t chosen, Vec3 from, Point2 u) const;
+    [[nodiscard]] std::optional<LightSample> sample_local(const LocalChoice& chosen, Vec3 from,
+                                                          Point2 u) const;
     [[nodiscard]] Spectrum emitted(const EmissiveTriangle& light, const Hit& hit) const;
 
     const SceneData& scene_;
@@ -122,7 +131,10 @@ class LightSampler {
     std::vector<EmissiveTriangle> triangles_;
     std::vector<std::uint32_t> first_triangle_;  // per instance; no_light where it has none
     std::vector<LocalLight> local_;
-    std::vector<float> local_cdf_;  // local_.size() + 1
+    std::vector<float> local_cdf_;   // local_.size() + 1
+    std::optional<LightTree> tree_;  // over the first of local_, those at places
+    std::size_t places_ = 0;         // how many these are
+    float tree_probability_ = 0;     // of the tree against directional lights
 };
 
 /// LightSampler::sample of the chosen triangles; leaves other lanes of `samples` alone.

@@ -48,6 +48,31 @@ Bsdf glass(const SurfacePoint& p, const Factors& f, Masking masking) {
     return RoughDielectric{eta, f.base_color, !m.solid, {std::min(f.alpha, 1.0f), masking}};
 }
 
+float glass_share(const Factors& f) { return f.transmission * (1 - f.metallic); }
+
+/// The share of metal in what is not glass.
+float opaque_metal(const Factors& f) {
+    return glass_share(f) > 0 ? f.metallic / (1 - glass_share(f)) : f.metallic;
+}
+
+/// What becomes of the light that arrives at a pane; the tint takes the rest.
+struct PaneShares {
+    Spectrum passed;         // goes straight on
+    float mirrored, layers;  // reflected by the glass; meets the opaque layering instead of glass
+};
+
+PaneShares pane_shares(const SceneData& scene, const Hit& hit, const SurfacePoint& p, const Factors& f,
+                       float cosine) {
+    const Material& m = *p.material;
+    const float there =
+        m.alpha_mode == AlphaMode::opaque
+            ? 1
+            : opacity(scene, m,
+                      texture_coordinates(scene.meshes[index(scene.instances[hit.instance].mesh)], hit));
+    const float r = sheet_reflectance(std::min(cosine, 1.0f), m.ior), glass = there * glass_share(f);
+    return {Spectrum{1 - there} + f.base_color * (glass * (1 - r)), glass * r, there - glass};
+}
+
 /// The layering without its transmissive part: metal in the share `metallic` of it.
 Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking) {
     const bool smooth = f.alpha < smooth_alpha;
@@ -65,10 +90,32 @@ Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking)
 
 Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u) {
     const Factors f = factors_at(scene, p);
-    const float glass_share = f.transmission * (1 - f.metallic);
-    if (u < glass_share) return glass(p, f, masking);
-    return opaque_layers(f, glass_share > 0 ? f.metallic / (1 - glass_share) : f.metallic, p.material->ior,
-                         masking);
+    if (u < glass_share(f)) return glass(p, f, masking);
+    return opaque_layers(f, opaque_metal(f), p.material->ior, masking);
+}
+
+Pane pane_kind(const SceneData& scene, const Mesh& mesh) {
+    const Material& m = scene.materials[index(mesh.material)];
+    const bool smooth = sqr(m.roughness) < smooth_alpha;
+    if (!(m.transmission > 0) || m.solid || !smooth || m.metallic >= 1 || !is_black(m.emission))
+        return Pane::none;
+    const bool grey = m.base_color.r == m.base_color.g && m.base_color.g == m.base_color.b;
+    return grey && !m.base_color_texture && mesh.colors.empty() ? Pane::grey : Pane::coloured;
+}
+
+Spectrum pane_transmittance(const SceneData& scene, const Hit& hit, WorldDir direction) {
+    const SurfacePoint p = surface_point(scene, hit, -direction);
+    return pane_shares(scene, hit, p, factors_at(scene, p), dot(p.frame.n, -direction.v)).passed;
+}
+
+Bsdf make_pane_bsdf(const SceneData& scene, const Hit& hit, const SurfacePoint& p, LocalDir w_out,
+                    Masking masking, float u) {
+    const Factors f = factors_at(scene, p);
+    const PaneShares shares = pane_shares(scene, hit, p, f, cos_theta(w_out));
+    const float met = u * (1 - max_component(shares.passed));
+    if (met < shares.mirrored) return Mirror{Spectrum{1}};
+    if (met >= shares.mirrored + shares.layers) return Lambert{};  // what the tint has taken
+    return opaque_layers(f, opaque_metal(f), p.material->ior, masking);
 }
 
 std::optional<MetallicRoughness> as_layers(const Bsdf& bsdf) {

@@ -13,6 +13,18 @@ namespace relumine {
 /// the opaque layering.
 [[nodiscard]] Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u);
 
+/// Thin, smooth glass that emits nothing is a pane: a surface that rays pass by chance and shadow rays
+/// always, as the tracer has it. So it is a vertex only for what it does not let pass.
+[[nodiscard]] Pane pane_kind(const SceneData& scene, const Mesh& mesh);
+
+/// The share of light that passes the pane at `hit` (field t unset) straight along `direction`; at most 1.
+[[nodiscard]] Spectrum pane_transmittance(const SceneData& scene, const Hit& hit, WorldDir direction);
+
+/// The BSDF of a pane for a ray that has not passed; `u` in [0, 1) decides between glass, the opaque layering
+/// and what the tint absorbs.
+[[nodiscard]] Bsdf make_pane_bsdf(const SceneData& scene, const Hit& hit, const SurfacePoint& p,
+                                  LocalDir w_out, Masking masking, float u);
+
 /// The same reflection in the form of the layering: of Lambert, rough conductors and rough layers; empty for
 /// others.
 [[nodiscard]] std::optional<MetallicRoughness> as_layers(const Bsdf& bsdf);

@@ -9,19 +9,19 @@ namespace relumine {
 /// A reflecting BSDF in two parts, seen from one direction: what it reflects diffusely, as a number, and its
 /// lobes.
 struct LobeSplit {
-    Spectrum diffuse;             // directional albedo of the diffuse part, [0, 1]
-    Spectrum glossy;              // that of the lobes
-    std::optional<Bsdf> lobes;    // the BSDF without its diffuse part; empty where there are none
-    bool transmits = false;       // glass: `diffuse` and `glossy` are 0, `lobes` is all of it
-    float alpha = 0;              // GGX roughness of the lobes; 0: a delta
+    Spectrum diffuse;           // directional albedo of the diffuse part, [0, 1]
+    Spectrum glossy;            // that of the lobes
+    std::optional<Bsdf> lobes;  // the BSDF without its diffuse part; empty where there are none
+    bool transmits = false;     // glass: `diffuse` and `glossy` are 0, `lobes` is all of it
+    float alpha = 0;            // GGX roughness of the lobes; 0: a delta
 };
 
 /// Exact but for the tables' interpolation, an absolute error of 0.005 (0.02 at views below 5°); where the
 /// channels of a coat's reflectance differ by more than a scale, the largest counts.
 [[nodiscard]] LobeSplit split_lobes(const Bsdf& bsdf, LocalDir w_out);
 
-/// ∫ (1 − w_out · h)⁵ cos θ_in / π dω_in over the hemisphere, h the half vector: what Schlick's term of a coat
-/// takes of a diffuse base's light. `cosine` of w_out in [0, 1].
+/// ∫ (1 − w_out · h)⁵ cos θ_in / π dω_in over the hemisphere, h the half vector: what Schlick's term of a
+/// coat takes of a diffuse base's light. `cosine` of w_out in [0, 1].
 [[nodiscard]] float coat_albedo(float cosine);
 
 /// ∫ D·G / (4 cos θ_out) · {1 − (1 − w_out · h)⁵, (1 − w_out · h)⁵} dω_in: the factors of f0 and f90 in the

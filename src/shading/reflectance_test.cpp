@@ -24,8 +24,8 @@ Spectrum albedo_by_sampling(const Bsdf& bsdf, LocalDir w_out) {
 }
 
 MetallicRoughness layered(float alpha) {
-    return {Spectrum{0.8f, 0.5f, 0.2f}, Spectrum{0.04f}, Spectrum{1},
-            Spectrum{0.1f, 0.08f, 0.05f}, Spectrum{1}, {alpha, Masking::correlated}};
+    return {Spectrum{0.8f, 0.5f, 0.2f},   Spectrum{0.04f}, Spectrum{1},
+            Spectrum{0.1f, 0.08f, 0.05f}, Spectrum{1},     {alpha, Masking::correlated}};
 }
 
 void expect_near(Spectrum a, Spectrum b, float tolerance) {
@@ -67,7 +67,8 @@ TEST(Reflectance, ASmoothCoatIsADelta) {
     const LobeSplit split = split_lobes(bsdf, view(0.6f));
     ASSERT_TRUE(split.lobes.has_value());
     EXPECT_EQ(split.alpha, 0);
-    expect_near(split.glossy, albedo_by_sampling(*split.lobes, view(0.6f)), 2e-4f);  // sampling chooses between lobes
+    expect_near(split.glossy, albedo_by_sampling(*split.lobes, view(0.6f)),
+                2e-4f);  // sampling chooses between lobes
     expect_near(split.diffuse, albedo_by_sampling(without_delta(bsdf), view(0.6f)), 0.006f);
 }
 

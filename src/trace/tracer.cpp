@@ -3,11 +3,6 @@
 // their own.
 #include "trace/tracer.hpp"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -15,24 +10,12 @@
 #include <cstring>
 #include <vector>
 
-#include "base/hash.hpp"
 #include "relumine/error.hpp"
+#include "trace/embree.hpp"
+#include "trace/transparency.hpp"
 
 namespace relumine {
 namespace {
-
-struct ReleaseDevice {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct ReleaseGeometry {
-    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
-using EmbreeScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
-using Geometry = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
 
 /// The builder cuts its work by the number of task slots, and the tree's shape decides between hits at
 /// exactly equal distances: a constant makes the tree the same on every machine, whatever the number of
@@ -48,71 +31,6 @@ void throw_on_error(RTCDevice device, const char* doing) {
     throw Error{fmt::format("ray tracing: Embree error {} while {}", static_cast<int>(error), doing)};
 }
 
-#if RTC_VERSION_MAJOR >= 4
-using QueryContext = RTCRayQueryContext;
-void init_context(QueryContext* context) { rtcInitRayQueryContext(context); }
-RTCIntersectArguments intersect_arguments(QueryContext* context, RTCRayQueryFlags flags) {
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = context;
-    arguments.flags = flags;
-    return arguments;
-}
-void intersect1(RTCScene scene, RTCRayHit* query) {
-    QueryContext context;
-    init_context(&context);
-    RTCIntersectArguments arguments = intersect_arguments(&context, RTC_RAY_QUERY_FLAG_INCOHERENT);
-    rtcIntersect1(scene, query, &arguments);
-}
-void occluded1(RTCScene scene, RTCRay* query) {
-    QueryContext context;
-    init_context(&context);
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.context = &context;
-    rtcOccluded1(scene, query, &arguments);
-}
-void intersect16(RTCScene scene, const int* valid, RTCRayHit16* query, Coherence coherence) {
-    QueryContext context;
-    init_context(&context);
-    RTCIntersectArguments arguments =
-        intersect_arguments(&context, coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT
-                                                                       : RTC_RAY_QUERY_FLAG_INCOHERENT);
-    rtcIntersect16(valid, scene, query, &arguments);
-}
-void occluded16(RTCScene scene, const int* valid, RTCRay16* query) {
-    QueryContext context;
-    init_context(&context);
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.context = &context;
-    rtcOccluded16(valid, scene, query, &arguments);
-}
-#else
-using QueryContext = RTCIntersectContext;
-void intersect1(RTCScene scene, RTCRayHit* query) {
-    QueryContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene, &context, query);
-}
-void occluded1(RTCScene scene, RTCRay* query) {
-    QueryContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene, &context, query);
-}
-void intersect16(RTCScene scene, const int* valid, RTCRayHit16* query, Coherence coherence) {
-    QueryContext context;
-    rtcInitIntersectContext(&context);
-    if (coherence == Coherence::coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid, scene, &context, query);
-}
-void occluded16(RTCScene scene, const int* valid, RTCRay16* query) {
-    QueryContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded16(valid, scene, &context, query);
-}
-#endif
-
 void set_ray(RTCRay& query, const Ray& ray) {
     query.org_x = ray.origin.x;
     query.org_y = ray.origin.y;
@@ -124,7 +42,7 @@ void set_ray(RTCRay& query, const Ray& ray) {
     query.tfar = ray.t_max;
     query.time = 0;
     query.mask = 0xffffffffu;
-    query.id = ray.opacity_seed;
+    query.id = 0;
     query.flags = 0;
 }
 
@@ -138,7 +56,6 @@ LaneMask set_rays(RTCRay16& query, const RayLanes& rays) {
     copy(rays.direction.y, query.dir_y);
     copy(rays.direction.z, query.dir_z);
     copy(rays.t_max, query.tfar);
-    copy(rays.opacity_seed, query.id);
     LaneMask valid;
     for (std::size_t i = 0; i < packet_size; ++i) {
         valid[i] = rays.t_max[i] >= 0 ? -1 : 0;
@@ -146,6 +63,7 @@ LaneMask set_rays(RTCRay16& query, const RayLanes& rays) {
         query.time[i] = 0;
         query.mask[i] = 0xffffffffu;
         query.flags[i] = 0;
+        query.id[i] = static_cast<unsigned>(i);
     }
     return valid;
 }
@@ -179,31 +97,42 @@ EmbreeScene new_scene(RTCDevice device) {
 }  // namespace
 
 struct Tracer::Impl {
-    /// What the opacity filter needs to know; one per geometry that is not opaque.
-    struct FilterData {
-        const Impl* tracer;
-        std::uint32_t instance;  // or no_instance where the geometry is instanced
-    };
-
     const SceneData& scene_data;
     OpacityFunction opacity;
+    PaneModel panes;
     Device device;
     std::vector<EmbreeScene> mesh_scenes;  // per mesh; null unless instanced
     std::vector<std::unique_ptr<FilterData>> filters;
     EmbreeScene top;
+    EmbreeScene coloured_panes;  // those of `top` alone; null where there are none
+    bool has_panes = false;
 
-    Impl(const SceneData& scene, OpacityFunction opacity_function)
-        : scene_data(scene), opacity(std::move(opacity_function)), device(rtcNewDevice(device_options)) {
+    Impl(const SceneData& scene, OpacityFunction opacity_function, PaneModel pane_model)
+        : scene_data(scene),
+          opacity(std::move(opacity_function)),
+          panes(std::move(pane_model)),
+          device(rtcNewDevice(device_options)) {
         if (!device) throw Error{"ray tracing: Embree cannot start on this machine"};
+    }
+
+    [[nodiscard]] Pane pane_of(const Mesh& mesh) const { return panes.kind ? panes.kind(mesh) : Pane::none; }
+
+    void filter_hits(RTCGeometry geometry, std::uint32_t instance, RTCFilterFunctionN closest,
+                     RTCFilterFunctionN shadow) {
+        filters.push_back(std::make_unique<FilterData>(FilterData{&opacity, &panes, instance}));
+        rtcSetGeometryUserData(geometry, filters.back().get());
+        rtcSetGeometryIntersectFilterFunction(geometry, closest);
+        rtcSetGeometryOccludedFilterFunction(geometry, shadow);
     }
 
     Geometry mesh_geometry(const Mesh& mesh, std::uint32_t instance) {
         Geometry geometry = triangle_geometry(device.get(), mesh);
-        if (scene_data.materials[index(mesh.material)].alpha_mode != AlphaMode::opaque) {
-            filters.push_back(std::make_unique<FilterData>(FilterData{this, instance}));
-            rtcSetGeometryUserData(geometry.get(), filters.back().get());
-            rtcSetGeometryIntersectFilterFunction(geometry.get(), pass_transparent);
-            rtcSetGeometryOccludedFilterFunction(geometry.get(), pass_transparent);
+        const Pane pane = pane_of(mesh);
+        if (pane != Pane::none) {
+            has_panes = true;
+            filter_hits(geometry.get(), instance, pass_panes, pass_light);
+        } else if (scene_data.materials[index(mesh.material)].alpha_mode != AlphaMode::opaque) {
+            filter_hits(geometry.get(), instance, pass_transparent, pass_transparent);
         }
         rtcCommitGeometry(geometry.get());
         return geometry;
@@ -237,50 +166,38 @@ struct Tracer::Impl {
         mesh_scenes.resize(scene_data.meshes.size());
         for (std::uint32_t i = 0; i < scene_data.instances.size(); ++i) {
             const Instance& instance = scene_data.instances[i];
-            const Geometry geometry = instance.identity
-                                          ? mesh_geometry(scene_data.meshes[index(instance.mesh)], i)
-                                          : instance_geometry(instance);
+            const Mesh& mesh = scene_data.meshes[index(instance.mesh)];
+            const Geometry geometry =
+                instance.identity ? mesh_geometry(mesh, i) : instance_geometry(instance);
             rtcAttachGeometryByID(top.get(), geometry.get(), i);
+            if (pane_of(mesh) != Pane::coloured) continue;
+            if (!coloured_panes) coloured_panes = new_scene(device.get());
+            rtcAttachGeometryByID(coloured_panes.get(), geometry.get(), i);
         }
         rtcCommitScene(top.get());
+        if (coloured_panes) rtcCommitScene(coloured_panes.get());
         throw_on_error(device.get(), "building the acceleration structure");
-    }
-
-    /// Embree's filter: lets a ray pass where its hash says that the surface is not there for it.
-    static void pass_transparent(const RTCFilterFunctionNArguments* args) {
-        const auto& filter = *static_cast<const FilterData*>(args->geometryUserPtr);
-        for (unsigned lane = 0; lane < args->N; ++lane) {
-            if (args->valid[lane] == 0) continue;
-            Hit hit;
-            hit.u = RTCHitN_u(args->hit, args->N, lane);
-            hit.v = RTCHitN_v(args->hit, args->N, lane);
-            hit.triangle = RTCHitN_primID(args->hit, args->N, lane);
-            hit.instance = filter.instance != no_instance ? filter.instance
-                                                          : RTCHitN_instID(args->hit, args->N, lane, 0);
-            const std::uint64_t surface = std::uint64_t{hit.instance} << 32 | hit.triangle;
-            const auto random =
-                static_cast<std::uint32_t>(hash(surface, RTCRayN_id(args->ray, args->N, lane)));
-            if (unit_float(random) >= filter.tracer->opacity(hit)) args->valid[lane] = 0;
-        }
     }
 };
 
-Tracer::Tracer(const SceneData& scene, OpacityFunction opacity)
-    : impl_(std::make_unique<Impl>(scene, std::move(opacity))) {
+Tracer::Tracer(const SceneData& scene, OpacityFunction opacity, PaneModel panes)
+    : impl_(std::make_unique<Impl>(scene, std::move(opacity), std::move(panes))) {
     const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, build_slots + 1);
     impl_->build();
+    asks_for_opacity_ = !impl_->filters.empty();
+    has_panes_ = impl_->has_panes;
+    has_coloured_panes_ = impl_->coloured_panes != nullptr;
 }
 
 Tracer::~Tracer() = default;
-
-bool Tracer::asks_for_opacity() const { return !impl_->filters.empty(); }
 
 Hit Tracer::closest_hit(const Ray& ray) const {
     RTCRayHit query;
     set_ray(query.ray, ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    intersect1(impl_->top.get(), &query);
+    Query context(ray);
+    intersect1(impl_->top.get(), &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     return {query.ray.tfar, query.hit.u, query.hit.v, instance_of(query.hit.geomID, query.hit.instID[0]),
             query.hit.primID};
@@ -289,8 +206,31 @@ Hit Tracer::closest_hit(const Ray& ray) const {
 bool Tracer::occluded(const Ray& ray) const {
     RTCRay query;
     set_ray(query, ray);
-    occluded1(impl_->top.get(), &query);
+    Query context(ray);
+    occluded1(impl_->top.get(), &context.embree, &query);
     return query.tfar < 0;
+}
+
+Spectrum Tracer::passed_light(const Ray& ray) const {
+    if (!has_panes_) return Spectrum{occluded(ray) ? 0.0f : 1.0f};
+    RTCRay query;
+    set_ray(query, ray);
+    PassedLight light;
+    Query context(ray, &light);
+    occluded1(impl_->top.get(), &context.embree, &query);
+    return query.tfar < 0 ? Spectrum{} : light[0];
+}
+
+Spectrum Tracer::tint(const Ray& ray, float t) const {
+    if (!has_coloured_panes_) return Spectrum{1};
+    RTCRay query;
+    set_ray(query, ray);
+    query.tfar = t;
+    PassedLight light;
+    Query context(ray, &light);
+    context.tints = true;
+    occluded1(impl_->coloured_panes.get(), &context.embree, &query);
+    return light[0];
 }
 
 void Tracer::closest_hits(const RayLanes& rays, HitLanes& hits, Coherence coherence) const {
@@ -298,7 +238,8 @@ void Tracer::closest_hits(const RayLanes& rays, HitLanes& hits, Coherence cohere
     const LaneMask valid = set_rays(query.ray, rays);
     std::ranges::fill(query.hit.geomID, RTC_INVALID_GEOMETRY_ID);
     std::ranges::fill(query.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
-    intersect16(impl_->top.get(), valid.data(), &query, coherence);
+    Query context(rays);
+    intersect16(impl_->top.get(), &context.embree, valid.data(), &query, coherence == Coherence::coherent);
     static_assert(no_instance == RTC_INVALID_GEOMETRY_ID);
     for (std::size_t i = 0; i < packet_size; ++i) {
         hits.t[i] = query.ray.tfar[i];
@@ -312,8 +253,18 @@ void Tracer::closest_hits(const RayLanes& rays, HitLanes& hits, Coherence cohere
 void Tracer::occluded(const RayLanes& rays, LaneMask& blocked) const {
     alignas(64) RTCRay16 query;
     const LaneMask valid = set_rays(query, rays);
-    occluded16(impl_->top.get(), valid.data(), &query);
+    Query context(rays);
+    occluded16(impl_->top.get(), &context.embree, valid.data(), &query);
     for (std::size_t i = 0; i < packet_size; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0 ? -1 : 0;
+}
+
+void Tracer::passed_light(const RayLanes& rays, SpectrumLanes& share) const {
+    alignas(64) RTCRay16 query;
+    const LaneMask valid = set_rays(query, rays);
+    PassedLight light;
+    Query context(rays, &light);
+    occluded16(impl_->top.get(), &context.embree, valid.data(), &query);
+    for (std::size_t i = 0; i < packet_size; ++i) share.set(i, query.tfar[i] < 0 ? Spectrum{} : light[i]);
 }
 
 void Tracer::closest_hits(std::span<const Ray, packet_size> rays, std::span<Hit, packet_size> hits,
@@ -328,6 +279,19 @@ void Tracer::occluded(std::span<const Ray, packet_size> rays, std::span<bool, pa
     LaneMask lanes;
     occluded(in_lanes(rays), lanes);
     for (std::size_t i = 0; i < packet_size; ++i) blocked[i] = lanes[i] != 0;
+}
+
+void Tracer::passed_light(std::span<const Ray, packet_size> rays,
+                          std::span<Spectrum, packet_size> share) const {
+    if (!has_panes_) {
+        LaneMask blocked;
+        occluded(in_lanes(rays), blocked);
+        for (std::size_t i = 0; i < packet_size; ++i) share[i] = Spectrum{blocked[i] != 0 ? 0.0f : 1.0f};
+        return;
+    }
+    SpectrumLanes lanes;
+    passed_light(in_lanes(rays), lanes);
+    for (std::size_t i = 0; i < packet_size; ++i) share[i] = lanes[i];
 }
 
 }  // namespace relumine
