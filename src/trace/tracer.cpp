@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/hash.hpp"
+#include "base/instruction_set.hpp"
 #include "relumine/error.hpp"
 
 namespace relumine {
@@ -38,7 +39,12 @@ using Geometry = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
 /// exactly equal distances: a constant makes the tree the same on every machine, whatever the number of
 /// threads that really work.
 constexpr std::size_t build_slots = 8;
-constexpr const char* device_options = "threads=8,start_threads=0,set_affinity=0";
+
+std::string device_options() {
+    const std::string set = chosen_instruction_set();  // Embree knows them by the same names, but for one
+    const std::string isa = set.empty() ? "" : set == "sse4" ? ",isa=sse4.2" : ",isa=" + set;
+    return "threads=8,start_threads=0,set_affinity=0" + isa;
+}
 
 void throw_on_error(RTCDevice device, const char* doing) {
     const RTCError error = rtcGetDeviceError(device);
@@ -193,7 +199,9 @@ struct Tracer::Impl {
     EmbreeScene top;
 
     Impl(const SceneData& scene, OpacityFunction opacity_function)
-        : scene_data(scene), opacity(std::move(opacity_function)), device(rtcNewDevice(device_options)) {
+        : scene_data(scene),
+          opacity(std::move(opacity_function)),
+          device(rtcNewDevice(device_options().c_str())) {
         if (!device) throw Error{"ray tracing: Embree cannot start on this machine"};
     }
 
@@ -272,6 +280,8 @@ Tracer::Tracer(const SceneData& scene, OpacityFunction opacity)
 }
 
 Tracer::~Tracer() = default;
+
+std::string Tracer::library() { return "Embree " RTC_VERSION_STRING; }
 
 bool Tracer::asks_for_opacity() const { return !impl_->filters.empty(); }
 
