@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Nothing is lost and nothing runs away: interrupted and resumed renders have the bits of uninterrupted ones,
-// for every method, any number of threads, whole and cropped; limits hold; samples that are not finite are
-// dropped, counted and replayed.
+// for every method, any number of threads, whole and cropped; limits hold.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <limits>
 
 #include "relumine/error.hpp"
-#include "tests/render_support.hpp"
+#include "tests/keep_support.hpp"
 #include "tests/run_command.hpp"
 
 namespace relumine {
@@ -17,41 +16,10 @@ namespace {
 using test::read_bytes;
 using test::ScratchFolder;
 using test::write_bytes;
+using testing::no_end;
 using testing::project_scene;
-
-/// Ends a render after so many reports of progress.
-class StopAfter : public RenderObserver {
-  public:
-    explicit StopAfter(int reports) : reports_(reports) {}
-    void progress(const Progress&) override { --reports_; }
-    bool stop_requested() override { return reports_ <= 0; }
-    void warning(const std::string& text) override { warnings.push_back(text); }
-    void finished(const RenderStats& s) override { stats = s; }
-
-    RenderStats stats;
-    std::vector<std::string> warnings;
-
-  private:
-    int reports_;
-};
-
-constexpr int no_end = 1 << 30;
-
-RenderSettings settings_for(const std::string& method) {
-    RenderSettings settings;
-    settings.method = method;
-    settings.samples_per_pixel = method == "cache" || method == "block-gather" ? 18 : 5;  // several passes
-    settings.width = 36;
-    settings.height = 20;
-    settings.gather_rays = 16;
-    settings.record_size = 16;
-    settings.gap_cell = 8;
-    settings.max_depth = 2;
-    settings.error = 0.1f;
-    settings.radiance = "emission";
-    settings.aovs = {"albedo", "position", "direct", "samples", "variance"};
-    return settings;
-}
+using testing::small_settings;
+using testing::StopAfter;
 
 void expect_same_picture(const Image& a, const Image& b) {
     ASSERT_EQ(a.layers.size(), b.layers.size());
@@ -90,7 +58,7 @@ TEST_P(Interruption, NeitherItNorThreadsNorCropsChangeABit) {
     const Scene scene = project_scene("cornell-glossy.glb", "sky.exr");
     const ScratchFolder folder;
     for (const bool cropped : {false, true}) {
-        RenderSettings settings = settings_for(GetParam());
+        RenderSettings settings = small_settings(GetParam());
         if (cropped) settings.crop = PixelRect{5, 3, 31, 18};
         settings.threads = 1;
         StopAfter observer(no_end);
@@ -115,7 +83,7 @@ TEST_P(Interruption, NeitherItNorThreadsNorCropsChangeABit) {
 TEST(Interruption, TilesThatKeepRecordsOfTheirOwnResumeToo) {
     const Scene scene = project_scene("cornell-glossy.glb", "sky.exr");
     const ScratchFolder folder;
-    RenderSettings settings = settings_for("reproject");
+    RenderSettings settings = small_settings("reproject");
     settings.cache_scope = "tile";
     settings.width = 80;
     const Outcome pieces = render_in_pieces(scene, settings, folder / "a.ckpt", 1);
@@ -133,7 +101,7 @@ TEST(Interruption, CacheMovesWithinAPassAndShowsWhatIsLit) {
         std::vector<std::uint64_t> done;
     };
     const Scene scene = project_scene("cornell-glossy.glb", "sky.exr");
-    RenderSettings settings = settings_for("cache");
+    RenderSettings settings = small_settings("cache");
     settings.samples_per_pixel = 16;
     Watch whole(no_end);
     (void)render(scene, settings, &whole);
@@ -154,7 +122,7 @@ TEST(Interruption, CacheMovesWithinAPassAndShowsWhatIsLit) {
 struct Begun {
     ScratchFolder folder;
     Scene scene = project_scene("cornell.glb");
-    RenderSettings settings = settings_for("path");
+    RenderSettings settings = small_settings("path");
     RenderControl control;
 
     Begun() {
@@ -255,7 +223,7 @@ TEST(Checkpoints, FailingOnesDoNotEndTheRender) {
 // ---- limits
 
 TEST(Limits, TimeIsUpWithThePictureSoFar) {
-    RenderSettings settings = settings_for("path");
+    RenderSettings settings = small_settings("path");
     settings.samples_per_pixel = 1 << 20;
     RenderControl control;
     control.time_limit = 0.3;
@@ -274,7 +242,7 @@ TEST(Limits, ARenderThatIsDoneInTimeSaysNothingOfThem) {
     control.time_limit = 1000;
     control.memory_limit = std::uint64_t{1} << 40;
     StopAfter observer(no_end);
-    const Image image = render(project_scene("cornell.glb"), settings_for("path"), control, &observer);
+    const Image image = render(project_scene("cornell.glb"), small_settings("path"), control, &observer);
     EXPECT_FALSE(observer.stats.stopped);
     EXPECT_EQ(image.metadata.count("relumine.stopped_by"), 0u);
 }
@@ -292,7 +260,7 @@ std::string memory_message(const RenderSettings& settings, std::uint64_t limit) 
 }
 
 TEST(Limits, WhatDoesNotFitIsRefusedWithTheNumberNeeded) {
-    RenderSettings settings = settings_for("path");
+    RenderSettings settings = small_settings("path");
     settings.aovs.clear();
     settings.width = settings.height = 30000;  // 900 million pixels × 2 × (3 floats and a count)
     const std::string message = memory_message(settings, std::uint64_t{8} << 30);
@@ -303,7 +271,7 @@ TEST(Limits, WhatDoesNotFitIsRefusedWithTheNumberNeeded) {
 
 TEST(Limits, MethodsTellWhatTheyHold) {
     for (const char* method : {"reproject", "cache"}) {
-        RenderSettings settings = settings_for(method);
+        RenderSettings settings = small_settings(method);
         settings.aovs.clear();
         settings.width = settings.height = 4000;
         const std::string message = memory_message(settings, std::uint64_t{2} << 30);
@@ -313,7 +281,7 @@ TEST(Limits, MethodsTellWhatTheyHold) {
 
 TEST(Limits, WhatGrowsBeyondThemIsStopped) {
     const std::vector<char> held(std::size_t{64} << 20, 1);  // something else in the same process
-    const std::string message = memory_message(settings_for("path"), std::uint64_t{40} << 20);
+    const std::string message = memory_message(small_settings("path"), std::uint64_t{40} << 20);
     EXPECT_NE(message.find("memory limit: expected at most 41943040 bytes in use, found "), std::string::npos)
         << message << held.back();
 }
@@ -331,89 +299,6 @@ TEST(Limits, ValuesThatMakeNoSenseAreRefused) {
     RenderControl control;
     control.resume = true;
     EXPECT_THROW(validate(control), SettingsError);
-}
-
-// ---- samples that are not finite
-
-using Corner = std::array<float, 3>;
-
-void add_square(SceneBuilder& builder, float half, float z, float emission) {
-    MaterialDescription material;
-    material.emission = {emission, emission, emission};
-    const std::vector<Corner> corners{{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
-    const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
-    builder.add_instance(builder.add_mesh({"", corners, {}, {}, triangles, builder.add_material(material)}));
-}
-
-/// A wall of radiance 1, and before it a small square that is as bright as a float can be: nothing but the
-/// camera sees it, and no sum of two samples of it is finite.
-Scene scene_with_poison() {
-    SceneBuilder builder;
-    add_square(builder, 10, -4, 1);
-    add_square(builder, 0.5f, -2, 3.2e38f);
-    CameraDescription camera;
-    camera.vertical_fov = 0.9;
-    builder.add_camera(camera);
-    return builder.build();
-}
-
-class NonFinite : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, NonFinite,
-                         ::testing::Values("path", "gather", "reproject", "reproject-mc", "cache",
-                                           "block-gather"));
-
-TEST_P(NonFinite, SamplesAreDroppedCountedAndReplayed) {
-    const Scene scene = scene_with_poison();
-    RenderSettings settings = settings_for(GetParam());
-    settings.aovs = {"samples"};
-    settings.max_depth = 0;  // emission alone
-    StopAfter observer(no_end);
-    const Image image = render(scene, settings, &observer);
-    std::uint64_t poisoned = 0;
-    const auto all = static_cast<std::uint64_t>(settings.samples_per_pixel);
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            const auto n = static_cast<std::uint64_t>(
-                image.layer("samples")->pixels[static_cast<std::size_t>(y * image.width + x)]);
-            poisoned += all - n;
-            EXPECT_EQ(image.rgb(x, y)[0], n > 0 ? 1.0f : 0.0f) << x << ", " << y;
-        }
-    EXPECT_GT(poisoned, 50u);
-    EXPECT_EQ(observer.stats.non_finite_samples, poisoned);
-    EXPECT_EQ(observer.stats.samples, 36u * 20u * all - poisoned);
-    ASSERT_TRUE(observer.stats.first_non_finite);
-    const auto [x, y, sample] = *observer.stats.first_non_finite;
-    EXPECT_FALSE(replay_sample(scene, settings, static_cast<int>(x), static_cast<int>(y),
-                               static_cast<std::uint32_t>(sample))
-                     .finite);
-    const ReplayedSample healthy = replay_sample(scene, settings, 0, 0, 3);
-    EXPECT_TRUE(healthy.finite);
-    EXPECT_EQ(healthy.emission, (std::array<float, 3>{1, 1, 1}));
-}
-
-TEST_P(NonFinite, ReplayedSamplesAddUpToThePixel) {
-    const Scene scene = project_scene("cornell-glossy.glb", "sky.exr");
-    RenderSettings settings = settings_for(GetParam());
-    settings.aovs.clear();
-    settings.filter_residual = false;  // it mixes pixels
-    const Image image = render(scene, settings);
-    for (const auto& [x, y] : {std::pair{3, 4}, std::pair{17, 12}}) {
-        double sum = 0;
-        for (int i = 0; i < settings.samples_per_pixel; ++i) {
-            const ReplayedSample s = replay_sample(scene, settings, x, y, static_cast<std::uint32_t>(i));
-            sum += double{s.emission[1]} + s.direct[1] + s.indirect[1];
-        }
-        const double mean = sum / settings.samples_per_pixel;
-        EXPECT_NEAR(image.rgb(x, y)[1], mean, 1e-6 + 1e-5 * mean) << x << ", " << y;
-    }
-}
-
-TEST(NonFinite, ReplayRefusesWhatIsNotThere) {
-    const Scene scene = project_scene("cornell.glb");
-    const RenderSettings settings = settings_for("path");
-    EXPECT_THROW((void)replay_sample(scene, settings, 36, 0, 0), SettingsError);
-    EXPECT_THROW((void)replay_sample(scene, settings, 0, -1, 0), SettingsError);
-    EXPECT_THROW((void)replay_sample(scene, settings, 0, 0, 5), SettingsError);
 }
 
 }  // namespace
