@@ -197,12 +197,8 @@ Inspection inspect(const Scene& scene, const RenderSettings& wanted, int x, int 
     const RenderSettings settings = reprojecting(wanted);
     const Framing framing = frame_of_pixel(scene.data(), settings, x, y);
     RenderSetup setup(scene.data(), settings, framing, [](const char*) {});
-    std::unique_ptr<RadianceField> field;
-    if (wants_field(settings)) {
-        RayCounts rays;
-        field = make_field(settings, setup.transport, setup.view, {}, rays);
-        setup.transport.field = field.get();
-    }
+    RayCounts field_rays;
+    if (wants_field(settings)) setup.add_field(settings, {}, field_rays);
     const InspectedPoint point = Inspector(setup, settings, x, y).run();
     Inspection inspection{draw_pictures(point), {}};
     inspection.report_json = report_json(point, inspection.pictures);

@@ -102,4 +102,10 @@ RenderSetup::RenderSetup(const SceneData& scene, const RenderSettings& settings,
       transport{scene, tracer, lights, uniform_bsdfs, masking},
       view(make_view(settings, framing)) {}
 
+void RenderSetup::add_field(const RenderSettings& settings, const std::function<bool()>& stop,
+                            RayCounts& rays) {
+    field = make_field(settings, transport, view, stop, rays);
+    transport.field = field.get();
+}
+
 }  // namespace relumine

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "integrators/view.hpp"
+#include "integrators/light_source.hpp"
 #include "relumine/render.hpp"
 
 namespace relumine {
@@ -27,12 +27,16 @@ struct RenderSetup {
     RenderSetup(const RenderSetup&) = delete;
     RenderSetup& operator=(const RenderSetup&) = delete;
 
+    /// Builds the radiance field that `wants_field(settings)` asks for. `stop` may be empty.
+    void add_field(const RenderSettings& settings, const std::function<bool()>& stop, RayCounts& rays);
+
     Tracer tracer;
     LightSampler lights;
     Masking masking;
     UniformBsdfs uniform_bsdfs;
     Transport transport;
     View view;
+    std::unique_ptr<RadianceField> field;  // or null
 };
 
 }  // namespace relumine

@@ -39,6 +39,13 @@ std::string RenderStats::to_json() const {
     json["peak_memory_bytes"] = peak_memory_bytes;
     json["threads"] = threads;
     json["stopped"] = stopped;
+    json["stopped_by"] = stopped_by.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(stopped_by);
+    if (checkpoint)
+        json["checkpoint"] = {{"resumed", checkpoint->resumed},
+                              {"resumed_samples", checkpoint->resumed_samples},
+                              {"earlier_seconds", checkpoint->earlier_seconds},
+                              {"written", checkpoint->written},
+                              {"failed", checkpoint->failed}};
     return json.dump(2);
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <sstream>
@@ -85,17 +86,43 @@ void receive(int& from, std::string& to) {
         close_end(from);
 }
 
+using Clock = std::chrono::steady_clock;
+
+/// Sends SIGKILL when its time has come, once.
+class Killer {
+  public:
+    Killer(pid_t child, std::optional<int> after) : child_(child), waits_(after.has_value()) {
+        if (after) when_ += std::chrono::milliseconds(*after);
+    }
+    /// How long to wait before looking again, milliseconds.
+    [[nodiscard]] int pause() {
+        constexpr int usual = 10;
+        if (!waits_) return usual;
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(when_ - Clock::now()).count();
+        if (left > 0) return static_cast<int>(std::min<long long>(left, usual));
+        kill(child_, SIGKILL);
+        waits_ = false;
+        return usual;
+    }
+
+  private:
+    pid_t child_;
+    bool waits_;
+    Clock::time_point when_ = Clock::now();
+};
+
 /// Reads both streams to their ends and interrupts when the time has come.
 void listen(pid_t child, const RunOptions& options, int& out, int& err, CommandResult& result) {
     bool to_interrupt = !options.interrupt_when.empty();
+    Killer killer(child, options.kill_after);
     while (out >= 0 || err >= 0) {
         std::array<pollfd, 2> streams{{{out, POLLIN, 0}, {err, POLLIN, 0}}};  // poll skips −1
-        if (poll(streams.data(), streams.size(), 10) < 0) throw std::runtime_error("poll");
+        if (poll(streams.data(), streams.size(), killer.pause()) < 0) throw std::runtime_error("poll");
         if (streams[0].revents != 0) receive(out, result.out);
         if (streams[1].revents != 0) receive(err, result.err);
         if (to_interrupt && result.out.find(options.interrupt_when) != std::string::npos) {
             to_interrupt = false;
-            kill(child, SIGINT);
+            kill(child, options.signal == 0 ? SIGINT : options.signal);
             if (options.insist) kill(child, SIGTERM);
         }
     }

@@ -18,6 +18,8 @@ struct CommandResult {
 struct RunOptions {
     std::string interrupt_when;             // sends SIGINT once stdout holds this text; "": never
     bool insist = false;                    // and SIGTERM right behind it
+    int signal = 0;                         // sent instead of SIGINT; 0: SIGINT
+    std::optional<int> kill_after;          // milliseconds after which SIGKILL comes
     bool terminal = false;                  // stderr is a terminal of 80 columns
     bool close_stdout = false;              // the command starts without one
     bool break_pipe = false;                // nobody reads stdout

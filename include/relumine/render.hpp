@@ -77,7 +77,29 @@ struct FieldStats {
     double unresolved_links = 0;  // share of the links that led nowhere
 };
 
-/// What a render did. Counts are of this run alone; times are wall-clock seconds unless said.
+/// How a render is carried out. Nothing here changes a bit of the picture, but a limit may end it early.
+struct RenderControl {
+    double time_limit = 0;            // seconds; then the picture so far is returned. 0: none
+    std::uint64_t memory_limit = 0;   // bytes of the whole process; 0: none
+    std::string checkpoint;           // file that keeps what is done; "": none
+    double checkpoint_interval = 60;  // seconds, ≥ 0; one more is written at the end, however it comes
+    bool resume = false;              // go on from the checkpoint; from the beginning where there is none
+};
+
+/// Throws SettingsError for a value out of range, OutputError for a checkpoint that stands there and is not
+/// to be resumed: it may hold hours of work.
+void validate(const RenderControl& control);
+
+/// What checkpoints did for a render.
+struct CheckpointStats {
+    bool resumed = false;
+    std::uint64_t resumed_samples = 0;  // camera samples that earlier runs had finished
+    double earlier_seconds = 0;         // that these took, wall clock
+    std::uint64_t written = 0, failed = 0;
+};
+
+/// What a render did. Counts include what a resumed render had done before; times are wall-clock seconds of
+/// this run unless said.
 struct RenderStats {
     std::vector<std::pair<std::string, double>> stage_seconds;  // in order: "build", "lights", "render", …
     double total_seconds = 0;
@@ -92,7 +114,9 @@ struct RenderStats {
     std::optional<FieldStats> field;                              // where there is one
     std::uint64_t peak_memory_bytes = 0;                          // resident set of the process
     int threads = 0;
-    bool stopped = false;  // the observer asked to stop: fewer samples than wanted
+    bool stopped = false;                       // fewer samples than wanted
+    std::string stopped_by;                     // "": nothing, "observer", "time limit"
+    std::optional<CheckpointStats> checkpoint;  // where one was kept
 
     /// A JSON object with the fields above as keys; documented in docs/statistics.md.
     [[nodiscard]] std::string to_json() const;
@@ -116,6 +140,8 @@ class RenderObserver {
     /// Asked often. After `true` the render ends soon with the samples so far, each pixel with the same
     /// number.
     virtual bool stop_requested() { return false; }
+    /// Something went wrong that does not end the render. One line.
+    virtual void warning(const std::string&) {}
     virtual void finished(const RenderStats&) {}
 };
 
@@ -124,6 +150,38 @@ class RenderObserver {
 /// suffice.
 [[nodiscard]] Image render(const Scene& scene, const RenderSettings& settings = {},
                            RenderObserver* observer = nullptr);
+
+/// The same, kept within limits and safe from interruption. Besides, throws Error where memory_limit does not
+/// suffice, FileError for a checkpoint that is damaged or belongs to another scene, other settings or another
+/// version, naming the difference. After a whole render the checkpoint holds it all: remove it when the
+/// picture is safe.
+[[nodiscard]] Image render(const Scene& scene, const RenderSettings& settings, const RenderControl& control,
+                           RenderObserver* observer = nullptr);
+
+/// Where in the full frame the picture lies that these settings ask for.
+struct PictureFrame {
+    int width = 0, height = 0;  // of the full frame, pixels
+    PixelRect window;           // the part of it that is rendered
+};
+/// Throws SettingsError as render does.
+[[nodiscard]] PictureFrame picture_frame(const Scene& scene, const RenderSettings& settings);
+
+/// What one camera sample has brought: radiance by scattering vertices, as in the layers of these names.
+struct ReplayedSample {
+    std::array<float, 3> emission{}, direct{}, indirect{};
+    bool finite = true;  // where not, a render drops the sample
+};
+/// Renders one sample of one pixel of the full frame again. Methods that filter or share work between samples
+/// do it as if for this pixel alone: `cache` shows what the sample brings before the filter. Throws
+/// SettingsError for a pixel or a sample that the settings do not have, and as render does.
+[[nodiscard]] ReplayedSample replay_sample(const Scene& scene, const RenderSettings& settings, int x, int y,
+                                           std::uint32_t sample);
+
+/// The vector instructions that can be chosen on this machine, narrow to wide, such as "avx2"; and the
+/// choice, which holds for the whole process and must come before anything is rendered. Throws SettingsError
+/// for others.
+[[nodiscard]] std::vector<std::string> instruction_sets();
+void choose_instruction_set(const std::string& name);
 
 /// The library's version, "MAJOR.MINOR.PATCH".
 [[nodiscard]] const char* version();

@@ -142,8 +142,10 @@ std::vector<std::uint8_t> unpack_gzip(std::span<const std::uint8_t> packed, cons
     return Inflater(path).unpack(packed, limit);
 }
 
-void write_file_atomically(const std::string& path, std::span<const std::uint8_t> bytes) {
-    const std::string unfinished = fmt::format("{}.{}.unfinished", path, ::getpid());
+void write_file_atomically(const std::string& path, std::span<const std::uint8_t> bytes,
+                           const std::string& unfinished_name) {
+    const std::string unfinished =
+        unfinished_name.empty() ? fmt::format("{}.{}.unfinished", path, ::getpid()) : unfinished_name;
     Descriptor file(::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
     if (file.get() < 0) throw OutputError{fmt::format("{}: cannot create: {}", path, std::strerror(errno))};
     try {

@@ -27,7 +27,10 @@ inline constexpr std::size_t default_file_limit = std::size_t{8} << 30;  // byte
                                                     std::size_t limit = default_file_limit);
 
 /// Writes beside `path` and renames, so that `path` holds the old bytes or all of the new ones, never half a
-/// file. Throws OutputError and leaves nothing behind.
-void write_file_atomically(const std::string& path, std::span<const std::uint8_t> bytes);
+/// file. Throws OutputError and leaves nothing behind. `unfinished`: what the file is called until it is
+/// whole;
+/// "": a name that no other process uses, which a killed one leaves behind.
+void write_file_atomically(const std::string& path, std::span<const std::uint8_t> bytes,
+                           const std::string& unfinished = "");
 
 }  // namespace relumine

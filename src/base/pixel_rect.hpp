@@ -16,4 +16,8 @@ inline PixelRect grown(const PixelRect& r, int border) {
     return {r.x0 - border, r.y0 - border, r.x1 + border, r.y1 + border};
 }
 
+inline bool contains(const PixelRect& r, int x, int y) {
+    return x >= r.x0 && x < r.x1 && y >= r.y0 && y < r.y1;
+}
+
 }  // namespace relumine

@@ -2,6 +2,9 @@
 // Summing camera samples.
 #include "base/tile.hpp"
 
+#include <cmath>
+#include <limits>
+
 namespace relumine {
 
 Tile make_tile(const PixelRect& rect, std::uint32_t first_sample, std::uint32_t sample_count) {
@@ -10,11 +13,18 @@ Tile make_tile(const PixelRect& rect, std::uint32_t first_sample, std::uint32_t 
     return tile;
 }
 
+bool can_be_summed(const Spectrum& radiance) {
+    constexpr float most_samples = 0x1p20f, largest = std::numeric_limits<float>::max() / (2 * most_samples);
+    const auto small = [](float x) { return std::abs(x) <= largest; };  // NaN is not
+    return small(radiance.r) && small(radiance.g) && small(radiance.b);
+}
+
 void Tile::add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance, const FirstSurface& surface,
                const CacheFigures& figures) {
+    if (probe && probe->wanted == SampleId{x, y, sample}) probe->seen = radiance;
     const Spectrum total = radiance.total();
-    if (!is_finite(total)) {
-        if (!first_non_finite) first_non_finite = NonFiniteSample{x, y, sample};
+    if (!can_be_summed(total)) {
+        if (!first_non_finite) first_non_finite = SampleId{x, y, sample};
         ++non_finite;
         return;
     }

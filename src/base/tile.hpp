@@ -49,9 +49,21 @@ struct PixelSums {
     std::uint32_t samples = 0;
 };
 
-struct NonFiniteSample {
+/// Which camera sample: of which pixel, and which of its samples.
+struct SampleId {
     int x = 0, y = 0;  // full frame
     std::uint32_t sample = 0;
+    bool operator==(const SampleId&) const = default;
+};
+
+/// Whether a sample is finite, and far enough from the largest float that sums over a pixel's samples are,
+/// too.
+[[nodiscard]] bool can_be_summed(const Spectrum& radiance);
+
+/// Waits for one camera sample and keeps what it has brought.
+struct SampleProbe {
+    SampleId wanted;
+    std::optional<SplitRadiance> seen;
 };
 
 /// Sums for the samples [first_sample, first_sample + sample_count) of all pixels of `rect`.
@@ -62,13 +74,14 @@ struct Tile {
     RayCounts rays;
     CacheCounts cache;
     std::uint64_t non_finite = 0;  // samples dropped
-    std::optional<NonFiniteSample> first_non_finite;
+    std::optional<SampleId> first_non_finite;
+    SampleProbe* probe = nullptr;  // may be null
 
     [[nodiscard]] bool contains(int x, int y) const {
         return x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1;
     }
 
-    /// Adds a sample to its pixel, which the tile contains, or drops it where the radiance is not finite.
+    /// Adds a sample to its pixel, which the tile contains, or drops it where the radiance cannot be summed.
     void add(int x, int y, std::uint32_t sample, const SplitRadiance& radiance, const FirstSurface& surface,
              const CacheFigures& figures = {});
 };

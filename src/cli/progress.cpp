@@ -73,6 +73,8 @@ void EventStream::tile(const PixelRect& pixels) {
 
 void EventStream::warning(const std::string& text) { send({{"event", "warning"}, {"message", text}}); }
 
+void EventStream::sample(const Json& sample) { send({{"event", "sample"}, {"sample", sample}}); }
+
 void EventStream::finished(int exit_code, const Json& stats) {
     send({{"event", "finished"}, {"exit_code", exit_code}, {"stats", stats}});
 }

@@ -44,6 +44,8 @@ class EventStream {
     void progress(const Progress& progress);
     void tile(const PixelRect& pixels);
     void warning(const std::string& text);
+    /// What `--only-sample` has found.
+    void sample(const nlohmann::ordered_json& sample);
     void finished(int exit_code, const nlohmann::ordered_json& stats);
     void error(const std::string& text, int exit_code);
 

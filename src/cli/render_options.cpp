@@ -11,17 +11,10 @@
 namespace relumine::cli {
 namespace {
 
-constexpr std::array<NotYet, 11> options_not_yet{{
-    {"--reference", "the report of the true error"},
-    {"--isa", "the choice of instruction sets"},
-    {"--only-sample", "the replay of single samples"},
-    {"--memory-limit", "the memory budget"},
+constexpr std::array<NotYet, 4> options_not_yet{{
     {"--preview", "the live preview"},
     {"--denoise", "the denoiser"},
     {"--allow-dir", "scenes that span several folders"},
-    {"--time-limit", "checkpoints"},
-    {"--checkpoint", "checkpoints"},
-    {"--resume", "checkpoints"},
     {"--tev", "the live view in tev"},
 }};
 constexpr std::array<NotYet, 1> values_not_yet{{
@@ -64,6 +57,18 @@ PixelRect parse_crop(const std::vector<std::string>& text) {
     return {edge[0], edge[1], edge[2], edge[3]};
 }
 
+/// "4G" → 4 · 1024³.
+std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
+    constexpr std::string_view units = "KMGT";
+    const std::size_t unit = text.empty() ? units.npos : units.find(text.back());
+    const int shift = unit == units.npos ? 0 : 10 * (static_cast<int>(unit) + 1);
+    const auto count = parse_number<std::uint64_t>(
+        option, std::string_view(text).substr(0, text.size() - (shift > 0 ? 1 : 0)));
+    if (count == 0 || count > std::numeric_limits<std::uint64_t>::max() >> shift)
+        throw unexpected_value(option, "a number of bytes above 0, such as 500M or 4G", text);
+    return count << shift;
+}
+
 std::vector<std::string> split_at_commas(const std::string& text) {
     std::vector<std::string> parts;
     for (std::size_t begin = 0; begin <= text.size();) {
@@ -72,6 +77,14 @@ std::vector<std::string> split_at_commas(const std::string& text) {
         begin = end + 1;
     }
     return parts;
+}
+
+OnlySample parse_only_sample(const std::string& text) {
+    const std::vector<std::string> parts = split_at_commas(text);
+    if (parts.size() != 3)
+        throw unexpected_value("--only-sample", "X,Y,I: a pixel and the number of its sample", text);
+    return {parse_number<int>("--only-sample", parts[0]), parse_number<int>("--only-sample", parts[1]),
+            parse_number<std::uint32_t>("--only-sample", parts[2])};
 }
 
 void add_output_options(CLI::App& app, RenderOptions& options) {
@@ -139,8 +152,30 @@ void add_crop_option(CLI::App& app, RenderSettings& s) {
         ->option_text("X0 Y0 X1 Y1");
 }
 
+void add_keeping_options(CLI::App& app, RenderOptions& options) {
+    RenderControl& control = options.control;
+    add_number(app, {"--time-limit", "S", "seconds after which the picture so far is written"},
+               control.time_limit, "none");
+    add_value(app, {"--memory-limit", "BYTES", "of the process; K, M, G, T: powers of 1024"}, "none",
+              [&](const std::string& text) { control.memory_limit = parse_bytes("--memory-limit", text); });
+    add_text(app, {"--checkpoint", "FILE", "keeps what is done; removed when the pictures are written"},
+             control.checkpoint);
+    add_number(app, {"--checkpoint-interval", "S", "seconds between checkpoints"},
+               control.checkpoint_interval, "60");
+    app.add_flag("--resume", control.resume, "goes on from the checkpoint, to the same bits");
+    add_value(app, {"--only-sample", "X,Y,I", "instead of the picture: what sample I of pixel X,Y brings"},
+              "", [&](const std::string& text) { options.only_sample = parse_only_sample(text); });
+}
+
 void add_running_options(CLI::App& app, RenderOptions& options) {
     add_number(app, {"--threads", "N", "0: all; never changes the picture"}, options.settings.threads, "0");
+    add_text(
+        app,
+        {"--isa", "NAME",
+         fmt::format("vector instructions: {}; the last by default", fmt::join(instruction_sets(), ", "))},
+        options.instruction_set);
+    add_text(app, {"--reference", "FILE", "also tells how far the picture is from this one"},
+             options.reference);
     add_text(app, {"--stats", "FILE", "statistics as JSON, \"-\" for stdout; keys: docs/statistics.md"},
              options.stats_file);
     app.add_flag("--json-events", options.json_events, "progress on stdout, one JSON object per line");
@@ -166,6 +201,8 @@ void add_options(CLI::App& app, RenderOptions& options) {
     add_crop_option(app, options.settings);
     app.option_defaults()->group("Running");
     add_running_options(app, options);
+    app.option_defaults()->group("Limits and interruptions");
+    add_keeping_options(app, options);
 }
 
 void refuse_contradictions(const RenderOptions& options) {
@@ -173,6 +210,8 @@ void refuse_contradictions(const RenderOptions& options) {
         throw UsageError(
             "--stats: expected a file beside --json-events, whose last line holds the statistics, found "
             "\"-\"");
+    if (options.control.resume && options.control.checkpoint.empty())
+        throw UsageError("--resume: expected --checkpoint FILE beside it, found none");
 }
 
 }  // namespace

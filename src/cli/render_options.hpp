@@ -2,6 +2,7 @@
 // The options of `relumine render`, and those of them that other commands share.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,13 +14,23 @@
 
 namespace relumine::cli {
 
+/// One camera sample: pixel of the full frame, number of the sample.
+struct OnlySample {
+    int x = 0, y = 0;
+    std::uint32_t sample = 0;
+};
+
 struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;  // at least one
     SceneOptions scene_options;
     RenderSettings settings;
     WriteOptions write;
-    std::string stats_file;  // "": none; "-": stdout
+    RenderControl control;
+    std::string instruction_set;            // "": the machine's best
+    std::optional<OnlySample> only_sample;  // instead of the picture
+    std::string reference;                  // picture to compare with; "": none
+    std::string stats_file;                 // "": none; "-": stdout
     bool json_events = false;
     bool quiet = false;
     bool no_progress = false;

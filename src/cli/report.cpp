@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/console.hpp"
@@ -124,6 +126,43 @@ Json stats_json(const std::string& command_line, const RenderOptions& options, c
     json["settings"] = settings_json(options.settings, options.scene_options);
     json["scene"] = scene_json(options.scene, info);
     return json;
+}
+
+namespace {
+
+std::array<float, 3> total(const ReplayedSample& s) {
+    std::array<float, 3> sum{};
+    for (std::size_t c = 0; c < 3; ++c) sum[c] = s.emission[c] + s.direct[c] + s.indirect[c];
+    return sum;
+}
+
+/// JSON has no numbers for NaN and infinity: text, then.
+Json rgb_json(const std::array<float, 3>& rgb) {
+    Json json;
+    for (const float value : rgb)
+        json.push_back(std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value)));
+    return json;
+}
+
+}  // namespace
+
+Json sample_json(const OnlySample& which, const ReplayedSample& s) {
+    return {{"pixel", {which.x, which.y}},
+            {"sample", which.sample},
+            {"finite", s.finite},
+            {"emission", rgb_json(s.emission)},
+            {"direct", rgb_json(s.direct)},
+            {"indirect", rgb_json(s.indirect)},
+            {"radiance", rgb_json(total(s))}};
+}
+
+std::string sample_text(const OnlySample& which, const ReplayedSample& s) {
+    std::string text = fmt::format("pixel {},{} sample {}: {}\n", which.x, which.y, which.sample,
+                                   s.finite ? "finite" : "not finite; a render leaves it out");
+    for (const auto& [name, rgb] : {std::pair{"emission", s.emission}, std::pair{"direct", s.direct},
+                                    std::pair{"indirect", s.indirect}, std::pair{"radiance", total(s)}})
+        text += fmt::format("  {:<10} {} {} {}\n", name, rgb[0], rgb[1], rgb[2]);
+    return text;
 }
 
 std::string bytes_text(double bytes) {

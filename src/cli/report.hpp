@@ -25,6 +25,10 @@ namespace relumine::cli {
                                                 const SceneInfo& info, const Image& image,
                                                 const RenderStats& stats);
 
+/// What one camera sample has brought, for programs and for people (several lines).
+[[nodiscard]] nlohmann::ordered_json sample_json(const OnlySample& which, const ReplayedSample& sample);
+[[nodiscard]] std::string sample_text(const OnlySample& which, const ReplayedSample& sample);
+
 /// "1.5 MB"; powers of 1000.
 [[nodiscard]] std::string bytes_text(double bytes);
 

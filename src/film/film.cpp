@@ -94,6 +94,11 @@ bool needs_surfaces(const std::vector<std::string>& layers) {
     });
 }
 
+FilmBytes film_bytes(std::uint64_t pixels, const std::vector<std::string>& layers) {
+    const auto [stored, shown] = Film::floats_per_pixel(layers);
+    return {pixels * 2 * (stored * sizeof(float) + sizeof(std::uint32_t)), pixels * shown * sizeof(float)};
+}
+
 Film::Film(int frame_width, int frame_height, const PixelRect& window, const std::vector<std::string>& layers)
     : frame_width_(frame_width), frame_height_(frame_height), window_(window) {
     const auto add_layer = [&](const std::string& name) {
@@ -112,6 +117,17 @@ Film::Film(int frame_width, int frame_height, const PixelRect& window, const std
     pending_.resize(pixels * channels_);
     finished_samples_.resize(pixels);
     pending_samples_.resize(pixels);
+}
+
+std::pair<std::size_t, std::size_t> Film::floats_per_pixel(const std::vector<std::string>& layers) {
+    std::size_t stored = 0, shown = 0;
+    for (const LayerSpec& spec : known_layers()) {
+        const bool wanted = std::ranges::find(layers, spec.name) != layers.end();
+        if (!wanted && *spec.name != 0) continue;
+        stored += spec.stored();
+        shown += spec.channels.size();
+    }
+    return {stored, shown};
 }
 
 std::size_t Film::offset(int x, int y) const {
@@ -139,6 +155,35 @@ void Film::finish_pass() {
     std::ranges::fill(pending_, 0.0f);
     std::ranges::fill(pending_samples_, 0u);
     ++passes_;
+}
+
+FilmState Film::state(std::span<const PixelRect> done) const {
+    FilmState state{passes_, finished_, {}, finished_samples_, {}};
+    if (done.empty()) return state;
+    state.pending.resize(pending_.size());
+    state.pending_samples.resize(pending_samples_.size());
+    for (const PixelRect& tile : done)
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            const std::size_t begin = offset(tile.x0, y), count = static_cast<std::size_t>(tile.width());
+            std::copy_n(&pending_[begin * channels_], count * channels_, &state.pending[begin * channels_]);
+            std::copy_n(&pending_samples_[begin], count, &state.pending_samples[begin]);
+        }
+    return state;
+}
+
+bool Film::restore(const FilmState& state) {
+    const auto fits = [](const auto& values, const auto& wanted, bool may_be_empty) {
+        return values.size() == wanted.size() || (may_be_empty && values.empty());
+    };
+    if (!fits(state.finished, finished_, false) || !fits(state.finished_samples, finished_samples_, false)
+        || !fits(state.pending, pending_, true) || !fits(state.pending_samples, pending_samples_, true))
+        return false;
+    passes_ = state.passes;
+    std::ranges::copy(state.finished, finished_.begin());
+    std::ranges::copy(state.finished_samples, finished_samples_.begin());
+    std::ranges::copy(state.pending, pending_.begin());
+    std::ranges::copy(state.pending_samples, pending_samples_.begin());
+    return true;
 }
 
 std::uint64_t Film::samples() const {

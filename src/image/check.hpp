@@ -16,7 +16,7 @@ namespace relumine {
 void check_image_size(std::int64_t width, std::int64_t height, const std::string& name);
 
 /// Throws ImageError when a file of `size` bytes cannot hold `samples_bytes` bytes of pixels: deflate, the
-/// densest of the codings that use this check, packs at most 1032 bytes into one.
+/// densest of the codings that use this check, packs at most 1032 bytes into one. (JPEG: 512 of one channel.)
 void check_packed_size(std::uint64_t samples_bytes, std::size_t size, const std::string& name);
 
 /// Whether the bytes begin with `magic`.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 
@@ -77,6 +78,53 @@ std::uint64_t count_channels(HeaderReader& value) {
     return count;
 }
 
+/// OpenEXR reads these types by their own length, whatever length the file says: where the two differ, it
+/// goes on at another place than we do, and what we have checked is not what it allocates.
+void check_length(std::string_view type, std::span<const std::uint8_t> value, const std::string& name) {
+    struct Length {
+        std::string_view type;
+        std::size_t bytes;
+    };
+    constexpr std::array lengths{Length{"box2i", 16},
+                                 Length{"box2f", 16},
+                                 Length{"int", 4},
+                                 Length{"float", 4},
+                                 Length{"double", 8},
+                                 Length{"v2i", 8},
+                                 Length{"v2f", 8},
+                                 Length{"v2d", 16},
+                                 Length{"v3i", 12},
+                                 Length{"v3f", 12},
+                                 Length{"v3d", 24},
+                                 Length{"m33f", 36},
+                                 Length{"m33d", 72},
+                                 Length{"m44f", 64},
+                                 Length{"m44d", 128},
+                                 Length{"compression", 1},
+                                 Length{"envmap", 1},
+                                 Length{"lineOrder", 1},
+                                 Length{"deepImageState", 1},
+                                 Length{"chromaticities", 32},
+                                 Length{"keycode", 28},
+                                 Length{"rational", 8},
+                                 Length{"timecode", 8},
+                                 Length{"tiledesc", 9}};
+    const auto* known = std::ranges::find(lengths, type, &Length::type);
+    std::uint64_t expected = known == lengths.end() ? value.size() : known->bytes;
+    HeaderReader reader(value, name);
+    if (type == "preview") {  // its width and height, then four bytes for each pixel
+        const std::uint64_t width = reader.take_u32(), height = reader.take_u32();
+        expected = width > 0 && height > value.size() / width ? value.size() + 1 : 8 + 4 * width * height;
+    }
+    if (type == "chlist") {
+        (void)count_channels(reader);
+        if (!reader.at_end()) expected = 0;
+    }
+    if (value.size() != expected)
+        fail_image(name, fmt::format("an attribute of type {} of its own length", type),
+                   fmt::format("{} bytes", value.size()));
+}
+
 void read_attribute(std::string_view attribute, HeaderReader& value, ExrHeader& header) {
     if (attribute == "dataWindow") read_window(value, header);
     if (attribute == "channels") header.channels = count_channels(value);
@@ -91,8 +139,10 @@ ExrHeader read_header(HeaderReader& reader, const std::string& name) {
     ExrHeader header;
     for (std::string_view attribute = reader.take_name(); !attribute.empty();
          attribute = reader.take_name()) {
-        (void)reader.take_name();  // type
-        HeaderReader value(reader.take(reader.take_u32()), name);
+        const std::string_view type = reader.take_name();
+        const auto bytes = reader.take(reader.take_u32());
+        check_length(type, bytes, name);
+        HeaderReader value(bytes, name);
         read_attribute(attribute, value, header);
     }
     return header;

@@ -133,6 +133,7 @@ ByteImage decode_jpeg(std::span<const std::uint8_t> encoded, const std::string& 
     const std::size_t width = reader.info().image_width, height = reader.info().image_height;
     check_image_size(static_cast<std::int64_t>(width), static_cast<std::int64_t>(height), name);
     check_color_space(reader.info(), name);
+    check_packed_size(width * height, encoded.size(), name);  // a bit at least for each 64 pixels
 
     ByteImage image{static_cast<int>(width), static_cast<int>(height), {}, {}};
     image.rgba8.resize(4 * width * height);

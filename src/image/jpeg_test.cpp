@@ -79,6 +79,12 @@ TEST(Jpeg, CmykWithoutTheMarkerIsInk) {
     expect_near(decode_jpeg(write_jpeg({8, 8, {0, 127, 255, 55}, JCS_CMYK, false, false}), "t"), 200, 100, 0);
 }
 
+TEST(Jpeg, BlankPicturesAreDenseAndStillRead) {
+    const Bytes jpeg = write_jpeg({2048, 2048, {90}, JCS_GRAYSCALE, true});
+    EXPECT_LT(jpeg.size(), 20000u);
+    EXPECT_EQ(decode_jpeg(jpeg, "t").width, 2048);
+}
+
 TEST(Jpeg, GarbageBetweenMarkersDoesNoHarm) {
     Bytes jpeg = write_jpeg({16, 16, {200, 100, 50}});
     jpeg.insert(jpeg.begin() + 20, {1, 2, 3});  // behind the JFIF marker: SOI (2) + APP0 (18)
@@ -112,6 +118,7 @@ TEST(Jpeg, HugeZeroAndOddHeadersAreRefused) {
     };
     EXPECT_TRUE(
         contains(with(3, {0xff, 0xdc, 0xff, 0xdc}), "65500 x 65500"));  // libjpeg's own limit is 65500
+    EXPECT_TRUE(contains(with(3, {0x20, 0, 0x20, 0}), "expected at least 61008 bytes for so many pixels"));
     EXPECT_TRUE(contains(with(3, {0, 0}), "t.jpg: expected an undamaged JPEG file, found"));
     EXPECT_TRUE(contains(with(2, {12}), "t.jpg: expected an undamaged JPEG file, found"));
     EXPECT_TRUE(

@@ -80,10 +80,17 @@ class BlockCache final : public Integrator {
     [[nodiscard]] std::uint32_t shortest_pass() const override { return samples_per_pass; }
     [[nodiscard]] std::uint32_t longest_pass() const override { return samples_per_pass; }
 
+    [[nodiscard]] bool works_in_preparation() const override { return true; }
+    [[nodiscard]] std::uint64_t known_bytes() const override {  // maps are not
+        const std::size_t filtered = plan_.filters ? sizeof(PixelResidual) + sizeof(FilterGuide) : 0;
+        const auto row =
+            static_cast<std::size_t>(std::min(view_.window.width() + 3 * cell_pixels, view_.width));
+        return count(region()) * (sizeof(PixelSums) + filtered)
+               + 2 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel);
+    }
+
     void prepare(Preparation& p) override {
-        const PixelRect frame{0, 0, view_.width, view_.height};
-        region_ = intersection(aligned(grown(view_.window, plan_.filters ? filter_reach(filter_levels) : 0)),
-                               frame);
+        region_ = region();
         pixels_.assign(count(region_), {});
         residuals_.assign(plan_.filters ? count(region_) : 0, {});
         guides_.assign(plan_.filters ? count(region_) : 0, {});
@@ -95,8 +102,9 @@ class BlockCache final : public Integrator {
             next = make_row(y + cell_pixels, p);
             light_row(above, here, next, p);
             here.samples.clear();  // the row below needs the maps alone
+            if (p.progress) p.progress(static_cast<double>(y + cell_pixels - region_.y0) / region_.height());
         }
-        if (plan_.filters && !p.stop()) filter(p);
+        if (plan_.filters) filter(p);  // after a stop, too: what is lit may be all there is to show
     }
 
     void render(Tile& tile) const override {
@@ -118,6 +126,11 @@ class BlockCache final : public Integrator {
     static std::size_t count(const PixelRect& r) {
         return static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height());
     }
+    /// What a pass computes: the window, and what its filter reaches.
+    [[nodiscard]] PixelRect region() const {
+        return intersection(aligned(grown(view_.window, plan_.filters ? filter_reach(filter_levels) : 0)),
+                            {0, 0, view_.width, view_.height});
+    }
     [[nodiscard]] std::size_t index_of(int x, int y) const {
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width())
                + static_cast<std::size_t>(x - region_.x0);
@@ -138,6 +151,7 @@ class BlockCache final : public Integrator {
         const MapSource source{map_source_, split_, grid_, environment_};
         std::mutex mutex;
         parallel_for(p.threads, row.maps.size(), [&](std::size_t i) {
+            if (p.stop()) return;
             RayCounts rays;
             CacheCounts counts;
             {
@@ -173,7 +187,7 @@ class BlockCache final : public Integrator {
         std::mutex mutex;
         parallel_for(p.threads, here.maps.size(), [&](std::size_t i) {
             const PixelRect cell = intersection(cell_of(here, i), region_);
-            if (cell.x0 >= cell.x1) return;
+            if (cell.x0 >= cell.x1 || p.stop()) return;
             std::vector<const BlockMap*> candidates;
             for (const CellRow* row : {&above, &here, &below})
                 for (std::size_t j = i - std::min<std::size_t>(i, 1); j <= i + 1 && j < row->maps.size(); ++j)
@@ -182,12 +196,18 @@ class BlockCache final : public Integrator {
             Workspace workspace{{grid_, points_, environment_, plan_.exact}, ResidualDistribution(grid_), {}};
             RayCounts rays;
             CacheCounts counts;
+            WorkDone dropped;
             for (int y = cell.y0; y < cell.y1; ++y)
-                for (int x = cell.x0; x < cell.x1; ++x)
-                    light_pixel(here, x, y, candidates, workspace, rays, counts);
+                for (int x = cell.x0; x < cell.x1; ++x) {
+                    Tile sums = make_tile({x, y, x + 1, y + 1}, 0, 0);
+                    sums.probe = p.probe;
+                    light_pixel(here, candidates, workspace, sums, rays, counts);
+                    if (contains(view_.window, x, y)) dropped.add(sums.non_finite, sums.first_non_finite);
+                }
             const std::lock_guard lock(mutex);
             p.rays.add(rays);
             p.counts.add(counts);
+            p.dropped.add(dropped.non_finite, dropped.first_non_finite);
         });
     }
 
@@ -199,8 +219,10 @@ class BlockCache final : public Integrator {
         return !apart(map.center_x, cell.x0, cell.x1) && !apart(map.center_y, cell.y0, cell.y1);
     }
 
-    void light_pixel(const CellRow& row, int x, int y, std::span<const BlockMap* const> candidates,
-                     Workspace& w, RayCounts& rays, CacheCounts& counts) {
+    /// `sums`: of the pixel, empty.
+    void light_pixel(const CellRow& row, std::span<const BlockMap* const> candidates, Workspace& w,
+                     Tile& sums, RayCounts& rays, CacheCounts& counts) {
+        const int x = sums.rect.x0, y = sums.rect.y0;
         w.samples.clear();
         for (const auto& samples : row.samples) {
             LitSample& sample = w.samples.emplace_back();
@@ -209,10 +231,8 @@ class BlockCache final : public Integrator {
                 sample.bsdf = *receiver_bsdf(sample.pixel->point->vertex, world);
         }
         light_from_maps(candidates, w, rays, counts);
-        Tile sums = make_tile({x, y, x + 1, y + 1}, 0, 0);
         PixelResidual residual;
         for (const LitSample& sample : w.samples) finish_sample(sample, sums, residual, rays);
-        rays.non_finite += sums.non_finite;
         pixels_[index_of(x, y)] = sums.pixels[0];
         if (!plan_.filters) return;
         residuals_[index_of(x, y)] = residual;

@@ -48,6 +48,19 @@ class CachedGather final : public Integrator {
     }
     [[nodiscard]] std::uint32_t longest_pass() const override { return 1; }
 
+    [[nodiscard]] std::uint64_t known_bytes() const override {  // records are not: none is dropped
+        const PixelRect points = placement_region(view_, 0);
+        return per_tile_ ? 0
+                         : sizeof(GBufferPixel) * static_cast<std::uint64_t>(points.width())
+                               * static_cast<std::uint64_t>(points.height());
+    }
+
+    /// The records of sample 0.
+    void recover(Preparation& p) override {
+        p.first_sample = 0;
+        prepare(p);
+    }
+
     void prepare(Preparation& p) override {
         if (per_tile_) return;
         gbuffer_ = std::make_unique<GBuffer>(transport_, view_, placement_region(view_, p.first_sample),

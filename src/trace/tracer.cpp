@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "base/instruction_set.hpp"
 #include "relumine/error.hpp"
 #include "trace/embree.hpp"
 #include "trace/transparency.hpp"
@@ -21,7 +22,12 @@ namespace {
 /// exactly equal distances: a constant makes the tree the same on every machine, whatever the number of
 /// threads that really work.
 constexpr std::size_t build_slots = 8;
-constexpr const char* device_options = "threads=8,start_threads=0,set_affinity=0";
+
+std::string device_options() {
+    const std::string set = chosen_instruction_set();  // Embree knows them by the same names, but for one
+    const std::string isa = set.empty() ? "" : set == "sse4" ? ",isa=sse4.2" : ",isa=" + set;
+    return "threads=8,start_threads=0,set_affinity=0" + isa;
+}
 
 void throw_on_error(RTCDevice device, const char* doing) {
     const RTCError error = rtcGetDeviceError(device);
@@ -111,7 +117,7 @@ struct Tracer::Impl {
         : scene_data(scene),
           opacity(std::move(opacity_function)),
           panes(std::move(pane_model)),
-          device(rtcNewDevice(device_options)) {
+          device(rtcNewDevice(device_options().c_str())) {
         if (!device) throw Error{"ray tracing: Embree cannot start on this machine"};
     }
 
@@ -190,6 +196,8 @@ Tracer::Tracer(const SceneData& scene, OpacityFunction opacity, PaneModel panes)
 }
 
 Tracer::~Tracer() = default;
+
+std::string Tracer::library() { return "Embree " RTC_VERSION_STRING; }
 
 Hit Tracer::closest_hit(const Ray& ray) const {
     RTCRayHit query;

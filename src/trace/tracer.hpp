@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "base/frame.hpp"
 #include "base/lanes.hpp"
@@ -96,6 +97,10 @@ class Tracer {
     ~Tracer();
     Tracer(const Tracer&) = delete;
     Tracer& operator=(const Tracer&) = delete;
+
+    /// What builds the tree and meets it, with its version: other ones may decide otherwise between equal
+    /// hits.
+    [[nodiscard]] static std::string library();
 
     /// Whether there is anything that is not opaque: if not, Ray::opacity_seed does not matter.
     [[nodiscard]] bool asks_for_opacity() const { return asks_for_opacity_; }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a render will need of memory, as far as that is known before it begins.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "integrators/integrator.hpp"
+#include "relumine/render.hpp"
+#include "render_setup.hpp"
+
+namespace relumine {
+
+/// Bytes by what they are for.
+using MemoryNeeds = std::vector<std::pair<std::string, std::uint64_t>>;
+
+/// Program, scene, acceleration structure (estimated), film, picture and, where one is kept, checkpoint.
+[[nodiscard]] MemoryNeeds needed_before_building(const Scene& scene, const RenderSettings& settings,
+                                                 const Framing& framing, bool checkpoint);
+/// The same, and what the method will hold.
+[[nodiscard]] MemoryNeeds needed_with(const Integrator& integrator, const Scene& scene,
+                                      const RenderSettings& settings, const Framing& framing,
+                                      bool checkpoint);
+
+/// Throws Error with the bytes needed where the limit is below.
+void check_memory(const RenderControl& control, const MemoryNeeds& needs);
+
+}  // namespace relumine
