@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/pixel_rect.hpp"
 #include "base/transform.hpp"
 #include "base/vec.hpp"
 #include "image/byte_image.hpp"
@@ -95,6 +96,7 @@ struct SpotLight {
     Vec3 direction;      // unit, the axis along which light leaves
     Spectrum intensity;  // W·sr⁻¹ on the axis
     float cos_inner = 1, cos_outer = 0.70710678f;
+    bool smoothstep = false;  // between the angles: pbrt's smooth step instead of glTF's square
 };
 struct DirectionalLight {
     Vec3 direction;       // unit, the way the light travels
@@ -109,12 +111,21 @@ struct Environment {
     float rotation = 0;              // radians, counter-clockwise seen from +Y
 };
 
+/// Pictures of all directions, around the camera's Y axis.
+enum class Panorama : std::uint8_t { none, lat_long, equal_area };
+
 struct Camera {
     std::string name;
     Transform world_from_camera;  // looks along −Z, +Y up
     bool orthographic = false;
-    double vertical_extent = 0.7;  // field of view in radians, or full height in metres if orthographic
-    double aspect = 0;             // width / height; 0: as the picture's
+    double vertical_extent = 0.7;     // field of view in radians, or full height in metres if orthographic
+    double aspect = 0;                // width / height; 0: as the picture's
+    double stretch = 1;               // width over height of what a pixel sees
+    double shift_x = 0, shift_y = 0;  // of the picture's middle, to the right and upwards, in half heights
+    double lens_radius = 0, focus_distance = 0;  // thin lens: in units of the camera's space; 0: a pinhole
+    Panorama panorama = Panorama::none;
+    int width = 0, height = 0;      // pixels that the scene asks for; 0: nothing
+    std::optional<PixelRect> crop;  // of that picture
 };
 
 /// Everything. Readers fill it, `finish_scene` validates it; nothing changes it afterwards.

@@ -13,12 +13,13 @@ std::optional<LightSample> inverse_square(Vec3 position, Spectrum intensity, Vec
     return LightSample{{to_light / distance}, position, distance, intensity / sqr(distance), 1, true};
 }
 
-/// KHR_lights_punctual's cone: 1 inside the inner angle, 0 outside the outer one, quadratic in the cosine
-/// between.
+/// 1 inside the inner angle, 0 outside the outer one; between, KHR_lights_punctual's square of the cosine's
+/// share, or pbrt's smooth step of it.
 float cone(const SpotLight& light, Vec3 from) {
     const float cosine = dot(normalize(from - light.position), light.direction);
     const float ramp = (cosine - light.cos_outer) / std::max(1e-4f, light.cos_inner - light.cos_outer);
-    return sqr(std::clamp(ramp, 0.0f, 1.0f));
+    const float t = std::clamp(ramp, 0.0f, 1.0f);
+    return light.smoothstep ? t * t * (3 - 2 * t) : sqr(t);
 }
 
 }  // namespace
