@@ -31,9 +31,9 @@ Spectrum texel(const PbrtNode& node, int x, int y) {
     const auto wrap = [&](int i, int size) {
         return node.wrap == Wrap::clamp ? std::clamp(i, 0, size - 1) : (i % size + size) % size;
     };
-    const Spectrum raw = image.rgb[static_cast<std::size_t>(wrap(y, image.height))
-                                       * static_cast<std::size_t>(image.width)
-                                   + static_cast<std::size_t>(wrap(x, image.width))];
+    const Spectrum raw =
+        image.rgb[static_cast<std::size_t>(wrap(y, image.height)) * static_cast<std::size_t>(image.width)
+                  + static_cast<std::size_t>(wrap(x, image.width))];
     const auto channel = [&](float c) {
         c *= node.factor;
         return std::max(0.0f, node.invert ? 1 - c : c);
@@ -75,8 +75,8 @@ Spectrum evaluate(const PbrtNode& node, const At& at) {
                         evaluate(*node.input[2], at).r);
         case PbrtNode::Kind::bilerp: {
             const Vec2 st = map_uv(node.mapping, at.base);
-            return lerp(lerp(node.corner[0], node.corner[2], st.x), lerp(node.corner[1], node.corner[3], st.x),
-                        st.y);
+            return lerp(lerp(node.corner[0], node.corner[2], st.x),
+                        lerp(node.corner[1], node.corner[3], st.x), st.y);
         }
     }
     return {};
@@ -95,7 +95,8 @@ std::uint16_t encode(float x, bool srgb) {
 
 void put(ByteImage& image, int x, int y, Vec4 c, bool srgb) {
     const std::size_t i =
-        4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+        4
+        * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
     image.rgba16[i] = encode(c.x, srgb);
     image.rgba16[i + 1] = encode(c.y, srgb);
     image.rgba16[i + 2] = encode(c.z, srgb);
@@ -103,8 +104,11 @@ void put(ByteImage& image, int x, int y, Vec4 c, bool srgb) {
 }
 
 ByteImage blank(int width, int height) {
-    return {width, height, {},
-            std::vector<std::uint16_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
+    return {
+        width,
+        height,
+        {},
+        std::vector<std::uint16_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
 }
 
 /// Our coordinates (u, 1 − v) to those of a leaf's image, v downwards; `scale`: periods per image.
@@ -140,6 +144,69 @@ ImageId PbrtTextures::add_image(ByteImage image, const PbrtPlace& place) {
     return static_cast<ImageId>(out_.images.size() - 1);
 }
 
+/// The texels of a baked image, and where each is evaluated.
+struct PbrtTextures::Grid {
+    TextureRef ref;
+    int width = 1, height = 1;
+    const PbrtNode* leaf = nullptr;  // the only one, which each texel stands for
+    Vec2 base_low, base_size;        // else: u and v (upwards) of the lower left corner, and of the whole
+    bool by_domain = false;
+};
+
+/// The grid of a single leaf, or of images that have the same one; else one that is fine enough for all.
+PbrtTextures::Grid PbrtTextures::choose_grid(const std::vector<const PbrtNode*>& leaves,
+                                             const std::array<Vec2, 2>& domain, const PbrtPlace& place) {
+    constexpr int max_side = 4096;
+    const PbrtNode& leaf = *leaves[0];
+    const bool single = leaves.size() == 1, by_uv = leaf.mapping.kind == PbrtMapping::Kind::uv;
+    Grid grid;
+    grid.ref.uv_set = by_uv ? 0 : 1;
+    if (single && leaf.kind == PbrtNode::Kind::checkerboard) {
+        grid.leaf = &leaf;
+        grid.width = grid.height = 2;
+        grid.ref.uv_transform = leaf_transform(leaf.mapping, 0.5f);
+        grid.ref.nearest = true;
+        return grid;
+    }
+    const bool same = leaf.kind == PbrtNode::Kind::image && leaf.mapping.uv[0] != 0 && leaf.mapping.uv[1] != 0
+                      && (single || by_uv) && std::ranges::all_of(leaves, [&](const PbrtNode* other) {
+                             return other == &leaf || same_grid(*other, leaf);
+                         });
+    if (same) {
+        const auto& m = leaf.mapping.uv;  // the base at which all of them read the whole picture
+        const auto f = [](double x) { return static_cast<float>(x); };
+        grid.leaf = single ? &leaf : nullptr;
+        grid.width = leaf.pixels->width;
+        grid.height = leaf.pixels->height;
+        grid.ref.uv_transform = leaf_transform(leaf.mapping, 1);
+        grid.ref.wrap_u = grid.ref.wrap_v = leaf.wrap;
+        grid.ref.nearest = leaf.nearest;
+        grid.base_low = {f(-m[2] / m[0]), f(-m[3] / m[1])};
+        grid.base_size = {f(1 / m[0]), f(1 / m[1])};
+        return grid;
+    }
+    const Vec2 low = by_uv ? domain[0] : Vec2{0, 0}, high = by_uv ? domain[1] : Vec2{1, 1};
+    const Vec2 size{std::max(high.x - low.x, 1e-6f), std::max(high.y - low.y, 1e-6f)};
+    double columns = 1, rows = 1;
+    for (const PbrtNode* other : leaves) {
+        const auto [du, dv] = density(*other);
+        columns = std::max(columns, du * double{size.x});
+        rows = std::max(rows, dv * double{size.y});
+        if (other->mapping.kind != leaf.mapping.kind)
+            scene_.warn(place, "textures of different mappings in one material are read with the first's");
+    }
+    if (columns > max_side || rows > max_side)
+        scene_.warn(place, fmt::format("textures are combined at {0} × {0} texels", max_side));
+    grid.width = static_cast<int>(std::clamp(columns, 1.0, double{max_side}));
+    grid.height = static_cast<int>(std::clamp(rows, 1.0, double{max_side}));
+    grid.by_domain = by_uv;
+    grid.ref.uv_transform = {1 / size.x, 0, -low.x / size.x, 0, 1 / size.y, -(1 - high.y) / size.y};
+    grid.ref.wrap_u = grid.ref.wrap_v = Wrap::clamp;
+    grid.base_low = low;
+    grid.base_size = size;
+    return grid;
+}
+
 PbrtBaked PbrtTextures::bake(const std::vector<PbrtNodeRef>& nodes, const PbrtCombine& combine, bool srgb,
                              bool plain, const std::array<Vec2, 2>& domain, const PbrtPlace& place) {
     std::vector<const PbrtNode*> leaves;
@@ -150,82 +217,32 @@ PbrtBaked PbrtTextures::bake(const std::vector<PbrtNodeRef>& nodes, const PbrtCo
         return baked;
     }
     const PbrtNode& leaf = *leaves[0];
+    Grid grid = choose_grid(leaves, domain, place);
     baked.mapping = leaf.mapping;
-    TextureRef ref;
-    ref.uv_set = leaf.mapping.kind == PbrtMapping::Kind::uv ? 0 : 1;
-    const bool single = leaves.size() == 1;
-    if (single && leaf.kind == PbrtNode::Kind::image) {
-        ref.uv_transform = leaf_transform(leaf.mapping, 1);
-        ref.wrap_u = ref.wrap_v = leaf.wrap;
-        ref.nearest = leaf.nearest;
-        const PbrtPixels& pixels = *leaf.pixels;
-        if (plain && srgb && pixels.srgb8 && nodes[0].get() == &leaf && !leaf.invert && leaf.factor == 1) {
-            const auto known = shared_images_.find(pixels.srgb8.get());
-            ref.image = known != shared_images_.end() ? known->second : add_image(*pixels.srgb8, place);
-            shared_images_[pixels.srgb8.get()] = ref.image;
-            baked.texture = ref;
-            return baked;
-        }
-        ByteImage image = blank(pixels.width, pixels.height);
-        for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x)
-                put(image, x, y, combined(nodes, combine, {{}, &leaf, x, y}), srgb);
-        ref.image = add_image(std::move(image), place);
-    } else if (single && leaf.kind == PbrtNode::Kind::checkerboard) {
-        ref.uv_transform = leaf_transform(leaf.mapping, 0.5f);
-        ref.nearest = true;
-        ByteImage image = blank(2, 2);  // row 0 is the upper one: cells (0, 1) and (1, 1)
-        for (int y = 0; y < 2; ++y)
-            for (int x = 0; x < 2; ++x)
-                put(image, x, y, combined(nodes, combine, {{}, &leaf, x, 1 - y}), srgb);
-        ref.image = add_image(std::move(image), place);
-    } else {
-        constexpr int max_side = 4096;
-        const bool by_uv = leaf.mapping.kind == PbrtMapping::Kind::uv;
-        const Vec2 low = by_uv ? domain[0] : Vec2{0, 0}, high = by_uv ? domain[1] : Vec2{1, 1};
-        const Vec2 size{std::max(high.x - low.x, 1e-6f), std::max(high.y - low.y, 1e-6f)};
-        double columns = 1, rows = 1;
-        for (const PbrtNode* other : leaves) {
-            const auto [du, dv] = density(*other);
-            columns = std::max(columns, du * double{size.x});
-            rows = std::max(rows, dv * double{size.y});
-            if (other->mapping.kind != leaf.mapping.kind)
-                scene_.warn(place, "textures of different mappings in one material are read with the first's");
-        }
-        if (columns > max_side || rows > max_side)
-            scene_.warn(place, fmt::format("textures are combined at {0} × {0} texels", max_side));
-        ByteImage image = blank(std::clamp(static_cast<int>(columns), 1, max_side),
-                                std::clamp(static_cast<int>(rows), 1, max_side));
-        const bool grid = by_uv && std::ranges::all_of(leaves, [&](const PbrtNode* other) {
-            return other == &leaf || same_grid(*other, leaf);
-        });
-        if (grid) {  // texel by texel: exactly what each of them says
-            const PbrtPixels& pixels = *leaf.pixels;
-            image = blank(pixels.width, pixels.height);
-            ref.uv_transform = leaf_transform(leaf.mapping, 1);
-            ref.wrap_u = ref.wrap_v = leaf.wrap;
-            ref.nearest = leaf.nearest;
-        } else {
-            baked.by_domain = by_uv;
-            ref.uv_transform = {1 / size.x, 0, -low.x / size.x, 0, 1 / size.y, -(1 - high.y) / size.y};
-            ref.wrap_u = ref.wrap_v = Wrap::clamp;
-        }
-        for (int y = 0; y < image.height; ++y) {
-            for (int x = 0; x < image.width; ++x) {
-                const float s = (static_cast<float>(x) + 0.5f) / static_cast<float>(image.width);
-                const float t = 1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height);
-                Vec2 base{low.x + s * size.x, low.y + t * size.y};
-                if (grid) {  // the base at which all of them read the middle of this texel
-                    const auto& m = leaf.mapping.uv;
-                    base = {static_cast<float>((double{s} - m[2]) / (m[0] == 0 ? 1 : m[0])),
-                            static_cast<float>((double{t} - m[3]) / (m[1] == 0 ? 1 : m[1]))};
-                }
-                put(image, x, y, combined(nodes, combine, {base}), srgb);
-            }
-        }
-        ref.image = add_image(std::move(image), place);
+    baked.by_domain = grid.by_domain;
+    const bool as_it_is = plain && srgb && nodes[0].get() == grid.leaf && leaf.pixels && leaf.pixels->srgb8
+                          && !leaf.invert && leaf.factor == 1;
+    if (as_it_is) {
+        const auto known = shared_images_.find(leaf.pixels->srgb8.get());
+        grid.ref.image =
+            known != shared_images_.end() ? known->second : add_image(*leaf.pixels->srgb8, place);
+        shared_images_[leaf.pixels->srgb8.get()] = grid.ref.image;
+        baked.texture = grid.ref;
+        return baked;
     }
-    baked.texture = ref;
+    ByteImage image = blank(grid.width, grid.height);
+    const bool cells = leaf.kind == PbrtNode::Kind::checkerboard;  // row 0 is the upper one
+    for (int y = 0; y < grid.height; ++y) {
+        for (int x = 0; x < grid.width; ++x) {
+            const float s = (static_cast<float>(x) + 0.5f) / static_cast<float>(grid.width);
+            const float t = 1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(grid.height);
+            const Vec2 base{grid.base_low.x + s * grid.base_size.x, grid.base_low.y + t * grid.base_size.y};
+            const At at{base, grid.leaf, x, cells ? grid.height - 1 - y : y};
+            put(image, x, y, combined(nodes, combine, at), srgb);
+        }
+    }
+    grid.ref.image = add_image(std::move(image), place);
+    baked.texture = grid.ref;
     return baked;
 }
 
@@ -236,7 +253,8 @@ Vec2 mapped(const PbrtMapping& m, const std::array<double, 3>& p) {
     if (m.kind == PbrtMapping::Kind::planar)
         return {f(m.offset[0] + p[0] * m.axis_u[0] + p[1] * m.axis_u[1] + p[2] * m.axis_u[2]),
                 f(m.offset[1] + p[0] * m.axis_v[0] + p[1] * m.axis_v[1] + p[2] * m.axis_v[2])};
-    if (m.kind == PbrtMapping::Kind::cylindrical) return {f((pi_d + std::atan2(p[1], p[0])) / (2 * pi_d)), f(p[2])};
+    if (m.kind == PbrtMapping::Kind::cylindrical)
+        return {f((pi_d + std::atan2(p[1], p[0])) / (2 * pi_d)), f(p[2])};
     const double length = std::hypot(p[0], p[1], p[2]);
     const double theta = length > 0 ? std::acos(std::clamp(p[2] / length, -1.0, 1.0)) : 0;
     const double phi = std::atan2(p[1], p[0]);
@@ -281,7 +299,8 @@ void add_mapped_uvs(Mesh& mesh, const PbrtMapping& mapping, const Transform& wor
     }
     const bool spherical = mapping.kind == PbrtMapping::Kind::spherical;
     if (wraps) {
-        for (const Triangle& t : mesh.triangles) {  // the angle of a triangle's corners must not jump by a turn
+        for (const Triangle& t :
+             mesh.triangles) {  // the angle of a triangle's corners must not jump by a turn
             const auto angle = [&](std::uint32_t v) -> float& { return spherical ? uvs[v].y : uvs[v].x; };
             const float top = std::max({angle(t.vertex[0]), angle(t.vertex[1]), angle(t.vertex[2])});
             for (const std::uint32_t vertex : t.vertex)

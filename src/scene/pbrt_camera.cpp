@@ -53,8 +53,10 @@ FilmSize film_size(const PbrtScene& scene) {
         if (!values->empty() && values->size() != 4)
             p.refuse(values == &window ? "cropwindow" : "pixelbounds", "four values",
                      fmt::format("{}", values->size()));
-    if (!bounds.empty()) size.crop = crop_rect(p, size.width, size.height, bounds, false);
-    else if (!window.empty()) size.crop = crop_rect(p, size.width, size.height, window, true);
+    if (!bounds.empty())
+        size.crop = crop_rect(p, size.width, size.height, bounds, false);
+    else if (!window.empty())
+        size.crop = crop_rect(p, size.width, size.height, window, true);
     if (size.crop && size.crop->width() == size.width && size.crop->height() == size.height)
         size.crop.reset();
     return size;
@@ -115,7 +117,8 @@ void set_projection(const PbrtEntity& entity, Camera& camera) {
         return;
     }
     const double fov = p.number("fov", 90);
-    if (!(fov > 0 && fov < 180)) p.refuse("fov", "an angle between 0 and 180 degrees", fmt::format("{:g}", fov));
+    if (!(fov > 0 && fov < 180))
+        p.refuse("fov", "an angle between 0 and 180 degrees", fmt::format("{:g}", fov));
     camera.vertical_extent = 2 * std::atan(std::tan(fov * pi_d / 360) * half_height);
 }
 
@@ -124,7 +127,8 @@ void set_panorama(const PbrtEntity& entity, Camera& camera) {
     const std::vector<std::string> mappings{"equalarea", "equirectangular"};
     const std::string mapping = p.string("mapping", "equalarea");
     if (std::ranges::find(mappings, mapping) == mappings.end())
-        p.refuse("mapping", "the mapping " + one_of(mappings), quote(mapping) + did_you_mean(mapping, mappings));
+        p.refuse("mapping", "the mapping " + one_of(mappings),
+                 quote(mapping) + did_you_mean(mapping, mappings));
     camera.panorama = mapping == "equalarea" ? Panorama::equal_area : Panorama::lat_long;
     p.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});
 }

@@ -37,8 +37,7 @@ std::string PbrtFiles::resolve(const std::string& name, const PbrtPlace& place) 
 }
 
 std::vector<std::uint8_t> PbrtFiles::read(const std::string& name, const PbrtPlace& place) {
-    if (++files_ > max_files)
-        refuse_pbrt(place, fmt::format("at most {} files", max_files), "more");
+    if (++files_ > max_files) refuse_pbrt(place, fmt::format("at most {} files", max_files), "more");
     try {
         const std::string path = resolve(name, place);
         std::vector<std::uint8_t> bytes = read_file(path, bytes_left_);

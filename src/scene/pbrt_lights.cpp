@@ -19,7 +19,8 @@ namespace {
 constexpr double pi_d = 3.14159265358979323846;
 using Point = std::array<double, 3>;
 
-const std::vector<std::string> light_types{"distant", "goniometric", "infinite", "point", "projection", "spot"};
+const std::vector<std::string> light_types{"distant", "goniometric", "infinite",
+                                           "point",   "projection",  "spot"};
 
 Point apply(const Transform& t, const Point& p, double w) {
     Point q{};
@@ -56,7 +57,7 @@ class LightReader {
     void spot(const PbrtLight& light);
     void distant(const PbrtLight& light);
     void infinite(const PbrtLight& light);
-    void goniometric(const PbrtLight& light);
+    void patterned(const PbrtLight& light);
 
     PbrtScene& scene_;
     PbrtFiles& files_;
@@ -95,8 +96,8 @@ void LightReader::point(const PbrtLight& light) {
     double s = scale(p);
     const double power = p.number("power", -1);
     if (power > 0) s *= power / (4 * pi_d);
-    out_.point_lights.push_back({to_vec3(apply(light.world_from_light, from(light), 1)),
-                                 color(p, "I") * static_cast<float>(s)});
+    out_.point_lights.push_back(
+        {to_vec3(apply(light.world_from_light, from(light), 1)), color(p, "I") * static_cast<float>(s)});
 }
 
 void LightReader::spot(const PbrtLight& light) {
@@ -131,8 +132,9 @@ double upper_illuminance(const PbrtPixels& image) {
             const Point w = equal_area_direction((x + 0.5) / image.width, (y + 0.5) / image.height);
             if (w[2] <= 0) continue;
             sum += w[2]
-                   * double{luminance(image.rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width)
-                                                + static_cast<std::size_t>(x)])};
+                   * double{
+                       luminance(image.rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width)
+                                           + static_cast<std::size_t>(x)])};
         }
     }
     return sum * 2 * pi_d / (double(image.width) * image.height);
@@ -152,7 +154,8 @@ void LightReader::infinite(const PbrtLight& light) {
     const double illuminance = p.number("illuminance", -1);
     const bool has_color = p.find_spectrum("L") != nullptr;
     if (p.find("point3", "portal"))
-        scene_.warn(p.place(), "the portal of an infinite light is not used: its light comes from everywhere");
+        scene_.warn(p.place(),
+                    "the portal of an infinite light is not used: its light comes from everywhere");
     if (has_color && !file.empty()) p.refuse("L", "either \"L\" or \"filename\"", "both");
     double norm = pi_d;
     if (file.empty()) {
@@ -170,27 +173,56 @@ void LightReader::infinite(const PbrtLight& light) {
     infinite_.push_back(std::move(source));
 }
 
-void LightReader::goniometric(const PbrtLight& light) {
+/// Grey for goniometric lights, as pbrt has it.
+std::vector<Spectrum> pattern_factors(const PbrtPixels& image, bool grey) {
+    std::vector<Spectrum> factors = image.rgb;
+    if (grey)
+        for (Spectrum& c : factors) c = Spectrum{(c.r + c.g + c.b) / 3};
+    return factors;
+}
+
+/// The light that leaves through the picture at intensity 1: its mean luminance over the directions, in sr.
+double pattern_solid_angle(const LightPattern& pattern) {
+    double sum = 0;
+    for (int y = 0; y < pattern.height; ++y) {
+        for (int x = 0; x < pattern.width; ++x) {
+            const double u = ((x + 0.5) / pattern.width * 2 - 1) * pattern.half_width;
+            const double v = ((y + 0.5) / pattern.height * 2 - 1) * pattern.half_height;
+            const double weight = pattern.equal_area ? 1 : std::pow(1 + u * u + v * v, -1.5);
+            sum += weight
+                   * double{luminance(
+                       pattern.factor[static_cast<std::size_t>(y) * static_cast<std::size_t>(pattern.width)
+                                      + static_cast<std::size_t>(x)])};
+        }
+    }
+    const double whole = pattern.equal_area ? 4 * pi_d : 4 * pattern.half_width * pattern.half_height;
+    return whole * sum / (double(pattern.width) * pattern.height);
+}
+
+/// Goniometric lights (pbrt turns their pictures so that Y is up) and projectors.
+void LightReader::patterned(const PbrtLight& light) {
     const PbrtParameters& p = light.entity.parameters;
+    const bool projector = light.entity.type == "projection";
     double s = scale(p);
     const std::string file = p.string("filename", "");
-    const double power = p.number("power", -1);
-    Spectrum mean{1};
-    if (!file.empty()) {
-        const auto image = textures_.pixels(file, "sRGB", p.place());
-        if (light.entity.type == "goniometric") check_square(*image, p);
-        mean = {};
-        for (const Spectrum& c : image->rgb) mean += c / static_cast<float>(image->rgb.size());
-    }
-    if (light.entity.type == "projection") {
-        scene_.warn(p.place(), "light \"projection\" is not supported and was left out");
-        p.ignore({"fov"});
-        return;
-    }
-    scene_.warn(p.place(), "light \"goniometric\" shines evenly, with the mean of its picture");
-    if (power > 0) s *= power / (4 * pi_d * std::max(1e-30, double{luminance(mean)}));
+    const double power = p.number("power", -1), fov = projector ? p.number("fov", 90) : 90;
+    const Spectrum intensity = projector ? Spectrum{1} : color(p, "I");
+    if (file.empty()) p.refuse("filename", "\"string filename\"", "none");
+    if (!(fov > 0 && fov < 180))
+        p.refuse("fov", "an angle between 0 and 180 degrees", fmt::format("{:g}", fov));
+    const auto image = textures_.pixels(file, "sRGB", p.place());
+    if (!projector) check_square(*image, p);
+    const Transform swap_yz = transform_from_columns({1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1});
+    const std::optional<Transform> light_from_world =
+        inverse(projector ? light.world_from_light : light.world_from_light * swap_yz);
+    if (!light_from_world) refuse_pbrt(p.place(), "a light transform that can be inverted", "a flat one");
+    const double opposite = std::tan(fov * pi_d / 360), aspect = double(image->width) / image->height;
+    auto pattern = std::make_shared<LightPattern>(LightPattern{
+        *light_from_world, !projector, opposite * std::max(1.0, aspect), opposite * std::max(1.0, 1 / aspect),
+        image->width, image->height, pattern_factors(*image, !projector)});
+    if (power > 0) s *= power / std::max(1e-30, pattern_solid_angle(*pattern));
     out_.point_lights.push_back({to_vec3(apply(light.world_from_light, {0, 0, 0}, 1)),
-                                 color(p, "I") * mean * static_cast<float>(s)});
+                                 intensity * static_cast<float>(s), std::move(pattern)});
 }
 
 void LightReader::read(const PbrtLight& light) {
@@ -205,7 +237,7 @@ void LightReader::read(const PbrtLight& light) {
     else if (type == "infinite")
         infinite(light);
     else if (type == "goniometric" || type == "projection")
-        goniometric(light);
+        patterned(light);
     else
         refuse_pbrt(p.place(), "a light among " + one_of(light_types),
                     quote(type) + did_you_mean(type, light_types));
@@ -214,10 +246,11 @@ void LightReader::read(const PbrtLight& light) {
 
 Spectrum look_up(const PbrtPixels& image, Vec2 uv) {
     const auto pixel = [](float c, int size) {
-        return static_cast<std::size_t>(std::clamp(static_cast<int>(c * static_cast<float>(size)), 0, size - 1));
+        return static_cast<std::size_t>(
+            std::clamp(static_cast<int>(c * static_cast<float>(size)), 0, size - 1));
     };
-    return image.rgb[pixel(uv.y, image.height) * static_cast<std::size_t>(image.width)
-                     + pixel(uv.x, image.width)];
+    return image
+        .rgb[pixel(uv.y, image.height) * static_cast<std::size_t>(image.width) + pixel(uv.x, image.width)];
 }
 
 /// The mean of an image's radiance over a texel of the lat-long map.
@@ -254,9 +287,8 @@ void LightReader::finish() const {
                                                            : 2 + 2 * source.image->height / height;
         for (std::size_t i = 0; i < texels; ++i) {
             const int x = static_cast<int>(i) % (2 * height), y = static_cast<int>(i) / (2 * height);
-            environment.radiance[i] += source.image
-                                           ? lat_long_texel(source, x, y, 2 * height, height, steps)
-                                           : source.radiance;
+            environment.radiance[i] +=
+                source.image ? lat_long_texel(source, x, y, 2 * height, height, steps) : source.radiance;
         }
     }
     out_.environment = std::move(environment);

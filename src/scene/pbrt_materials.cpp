@@ -1,39 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// pbrt's materials and area lights as our material.
-#include "scene/pbrt_materials.hpp"
-
+// pbrt's materials as our material: one function per kind.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/message.hpp"
+#include "scene/pbrt_material_draft.hpp"
 #include "scene/quote.hpp"
 
 namespace relumine {
 
-/// A material on the way: ours, and the nodes that its textures are baked from.
-struct PbrtMaterials::Draft {
-    Material material;
-    PbrtPlace place;
-    std::string type;
-    PbrtNodeRef color = constant_node(Spectrum{0.5f});           // before `recolor`
-    std::function<Spectrum(Spectrum)> recolor;                   // to our base colour; empty: the same
-    PbrtNodeRef roughness;                                       // as pbrt says it; null: perfectly smooth
-    bool remap = true;
-    PbrtNodeRef alpha = constant_node(Spectrum{1});
-    std::optional<PbrtMapping> mapping;
-    std::array<Vec2, 2> domain{};
-    PbrtNodeRef normal;  // of the normal map, or null
-    bool visible = true, by_domain = false;
-};
-
 namespace {
 
-const std::vector<std::string> material_types{"coatedconductor", "coateddiffuse",      "conductor",
-                                              "dielectric",      "diffuse",            "diffusetransmission",
-                                              "hair",            "interface",          "measured",
-                                              "mix",             "subsurface",         "thindielectric"};
+const std::vector<std::string> material_types{
+    "coatedconductor",     "coateddiffuse", "conductor", "dielectric", "diffuse",
+    "diffusetransmission", "hair",          "interface", "measured",   "mix",
+    "subsurface",          "thindielectric"};
 
 /// Fresnel reflectance of unpolarised light, entering.
 double fresnel(double cosine, double eta) {
@@ -56,22 +39,6 @@ double diffuse_fresnel(double eta) {
     return sum;
 }
 
-/// The mean over cosine-weighted directions of what our coat lets through, at the facet between them.
-double our_transmittance(double f0) {
-    constexpr int steps = 16;
-    double sum = 0;
-    for (int i = 0; i < steps; ++i)
-        for (int j = 0; j < steps; ++j)
-            for (int k = 0; k < steps; ++k) {
-                const double c1 = std::sqrt((i + 0.5) / steps), c2 = std::sqrt((j + 0.5) / steps);
-                const double phi = 3.14159265358979 * (k + 0.5) / steps;
-                const double between = c1 * c2 + std::sqrt((1 - c1 * c1) * (1 - c2 * c2)) * std::cos(phi);
-                const double half = std::sqrt(std::max(0.0, (1 + between) / 2));
-                sum += 1 - (f0 + (1 - f0) * std::pow(1 - half, 5));
-            }
-    return sum / (steps * steps * steps);
-}
-
 double conductor_f0(double eta, double k) {
     return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
 }
@@ -81,31 +48,20 @@ Spectrum per_channel(Spectrum a, Spectrum b, const std::function<double(double, 
             static_cast<float>(f(double{a.b}, double{b.b}))};
 }
 
-/// Our perceptual roughness of pbrt's, whose α is the value itself or its square root.
-float our_roughness(float value, bool remap) {
-    const float alpha = std::clamp(remap ? std::sqrt(std::max(value, 0.0f)) : value, 0.0f, 1.0f);
-    return alpha < 1e-3f ? 0.0f : std::sqrt(alpha);
-}
-
-Vec4 opaque(Spectrum c) { return {c.r, c.g, c.b, 1}; }
-
 }  // namespace
 
-CoatedAlbedo::CoatedAlbedo(double eta, double thickness) {
-    const double outside = diffuse_fresnel(eta), inside = 1 - (1 - outside) / (eta * eta);
+CoatedAlbedo::CoatedAlbedo(double eta, double thickness, int bounces) : bounces_(bounces) {
+    const double inside = 1 - (1 - diffuse_fresnel(eta)) / (eta * eta);
     const double critical = std::sqrt(std::max(0.0, 1 - 1 / (eta * eta)));
     const double straight = std::exp(-2 * thickness / (1 + critical));  // one way through, inside the cone
-    const double trapped = critical > 0 ? std::exp(-4 * thickness / critical) : 1;  // there and back, outside it
-    enter_ = (1 - outside) * straight;
-    leave_ = (1 - inside) * straight;
-    inside_ = inside * trapped;
-    const double f0 = (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1));
-    ours_ = our_transmittance(f0);
+    const double there_and_back = critical > 0 ? std::exp(-4 * thickness / critical) : 1;  // outside of it
+    through_ = straight * straight / (eta * eta);
+    trapped_ = inside * there_and_back;
 }
 
-float CoatedAlbedo::equivalent(float base) const {
-    const double b = std::clamp(double{base}, 0.0, 1.0);
-    return static_cast<float>(std::clamp(enter_ * b * leave_ / (1 - b * inside_) / ours_, 0.0, 1.0));
+float CoatedAlbedo::base(float albedo) const {
+    const double a = std::clamp(double{albedo}, 0.0, 1.0), again = a * trapped_;
+    return static_cast<float>(std::min(1.0, a * through_ * (1 - std::pow(again, bounces_)) / (1 - again)));
 }
 
 const PbrtEntity& PbrtMaterials::find(const PbrtMaterialRef& ref) const {
@@ -125,8 +81,8 @@ void PbrtMaterials::read_surface(const PbrtParameters& p, Draft& draft) {
         draft.normal = std::move(node);
     }
     if (p.has("displacement")) {
-        scene_.warn(p.place(), fmt::format("bump mapping (\"displacement\" of {}) is not supported",
-                                           quote(draft.type)));
+        scene_.warn(p.place(),
+                    fmt::format("bump mapping (\"displacement\" of {}) is not supported", quote(draft.type)));
         p.ignore({"displacement"});
     }
 }
@@ -149,8 +105,10 @@ void PbrtMaterials::read_roughness(const PbrtParameters& p, const std::string& p
 double PbrtMaterials::read_eta(const PbrtParameters& p, std::string_view name) {
     double eta = 1.5;
     if (const PbrtNodeRef number = textures_.number_or_null(p, name)) {
-        if (is_constant(number)) eta = double{number->value.r};
-        else scene_.warn(p.place(), fmt::format("a texture for {} is read as 1.5", quote(name)));
+        if (is_constant(number))
+            eta = double{number->value.r};
+        else
+            scene_.warn(p.place(), fmt::format("a texture for {} is read as 1.5", quote(name)));
     } else if (const PbrtNodeRef spectrum = textures_.spectrum_or_null(p, name, PbrtSpectrumUse::unbounded)) {
         const Spectrum v = spectrum->value;
         if (is_constant(spectrum)) eta = (double{v.r} + double{v.g} + double{v.b}) / 3;
@@ -160,7 +118,8 @@ double PbrtMaterials::read_eta(const PbrtParameters& p, std::string_view name) {
 }
 
 void PbrtMaterials::diffuse(const PbrtEntity& entity, Draft& draft) {
-    draft.color = textures_.spectrum(entity.parameters, "reflectance", Spectrum{0.5f}, PbrtSpectrumUse::albedo);
+    draft.color =
+        textures_.spectrum(entity.parameters, "reflectance", Spectrum{0.5f}, PbrtSpectrumUse::albedo);
     draft.material.metallic = 0;
     draft.material.specular = 0;
     if (entity.parameters.has("sigma")) {
@@ -175,13 +134,14 @@ void PbrtMaterials::coated_diffuse(const PbrtEntity& entity, Draft& draft) {
     const double eta = read_eta(p, "eta");
     const PbrtNodeRef thickness = textures_.number(p, "thickness", 0.01);
     read_roughness(p, "", draft);
-    p.ignore({"maxdepth", "nsamples", "g"});
+    const int depth = std::clamp(p.integer("maxdepth", 10), 1, 1000);
+    p.ignore({"nsamples", "g"});
     if (p.has("albedo")) scene_.warn(p.place(), "a medium inside the coat (\"albedo\") is not supported");
     p.ignore({"albedo"});
-    const CoatedAlbedo coat(std::max(eta, 1.0), is_constant(thickness) ? double{thickness->value.r} : 0.01);
-    draft.recolor = [coat](Spectrum c) {
-        return Spectrum{coat.equivalent(c.r), coat.equivalent(c.g), coat.equivalent(c.b)};
-    };
+    const double thick = is_constant(thickness) ? std::max(0.0, double{thickness->value.r}) : 0.01;
+    const CoatedAlbedo coat(std::max(eta, 1.0), thick, (depth + 1) / 2);
+    draft.recolor = [coat](Spectrum c) { return Spectrum{coat.base(c.r), coat.base(c.g), coat.base(c.b)}; };
+    draft.material.coated_diffuse = true;
     draft.material.metallic = 0;
     draft.material.ior = static_cast<float>(std::max(eta, 1.0));
 }
@@ -197,7 +157,8 @@ void PbrtMaterials::conductor(const PbrtEntity& entity, Draft& draft) {
         draft.color = reflectance;
         return;
     }
-    const PbrtNodeRef eta = textures_.spectrum(p, "eta", {.1071f, .9772f, 1.2047f}, PbrtSpectrumUse::unbounded);
+    const PbrtNodeRef eta =
+        textures_.spectrum(p, "eta", {.1071f, .9772f, 1.2047f}, PbrtSpectrumUse::unbounded);
     const PbrtNodeRef k = textures_.spectrum(p, "k", {2.861f, 2.6244f, 2.3604f}, PbrtSpectrumUse::unbounded);
     if (!is_constant(eta) || !is_constant(k))
         scene_.warn(p.place(), "textures for \"eta\" and \"k\" are not supported; copper instead");
@@ -220,10 +181,10 @@ void PbrtMaterials::coated_conductor(const PbrtEntity& entity, Draft& draft) {
     p.ignore({"interface.roughness", "interface.uroughness", "interface.vroughness", "thickness", "maxdepth",
               "nsamples", "g", "albedo"});
     draft.material.metallic = 1;
-    draft.color = reflectance ? reflectance
-                              : constant_node(per_channel(eta->value, k->value, [&](double n, double kk) {
-                                    return conductor_f0(n / coat, kk / coat);
-                                }));
+    draft.color =
+        reflectance ? reflectance : constant_node(per_channel(eta->value, k->value, [&](double n, double kk) {
+            return conductor_f0(n / coat, kk / coat);
+        }));
     draft.recolor = [f_coat](Spectrum metal) {  // the light that goes to and fro between coat and metal
         const auto both = [&](float m) {
             const double f = double{m};
@@ -251,9 +212,8 @@ void PbrtMaterials::dielectric(const PbrtEntity& entity, Draft& draft) {
 
 void PbrtMaterials::diffuse_transmission(const PbrtEntity& entity, Draft& draft) {
     const PbrtParameters& p = entity.parameters;
-    scene_.warn(p.place(), "material \"diffusetransmission\" reflects, but transmits nothing");
     draft.color = textures_.spectrum(p, "reflectance", Spectrum{0.25f}, PbrtSpectrumUse::albedo);
-    (void)textures_.spectrum(p, "transmittance", Spectrum{0.25f}, PbrtSpectrumUse::albedo);
+    draft.transmittance = textures_.spectrum(p, "transmittance", Spectrum{0.25f}, PbrtSpectrumUse::albedo);
     const auto scale = static_cast<float>(p.number("scale", 1));
     draft.recolor = [scale](Spectrum c) { return c * scale; };
     draft.material.metallic = 0;
@@ -273,7 +233,9 @@ void PbrtMaterials::mix(const PbrtEntity& entity, Draft& draft) {
         fill(find({0, names[i], p.place()}), parts[i]);
     }
     --mix_depth_;
-    const auto is_matte = [](const Draft& d) { return d.material.metallic == 0 && d.material.specular == 0; };
+    const auto is_matte = [](const Draft& d) {
+        return d.material.metallic == 0 && d.material.specular == 0 && !d.transmittance && !d.normal;
+    };
     const Material &a = parts[0].material, &b = parts[1].material;
     auto color = std::make_shared<PbrtNode>();
     color->kind = PbrtNode::Kind::mix;
@@ -293,6 +255,9 @@ void PbrtMaterials::mix(const PbrtEntity& entity, Draft& draft) {
     draft.remap = main.remap;
     draft.color = main.color;
     draft.roughness = main.roughness;
+    draft.transmittance = main.transmittance;
+    draft.normal = main.normal;
+    if (a.coated_diffuse != b.coated_diffuse || main.transmittance) return;  // the one of the larger share
     if (!alike) {
         draft.material.transmission = std::lerp(a.transmission, b.transmission, share);
         draft.material.solid = a.transmission > 0 ? a.solid : b.solid;
@@ -310,14 +275,14 @@ void PbrtMaterials::mix(const PbrtEntity& entity, Draft& draft) {
 void PbrtMaterials::unsupported(const PbrtEntity& entity, Draft& draft) {
     scene_.warn(entity.parameters.place(),
                 fmt::format("material {} is not supported: a grey diffuse one instead", quote(entity.type)));
-    const PbrtNodeRef color =
-        entity.type == "subsurface"
-            ? textures_.spectrum_or_null(entity.parameters, "reflectance", PbrtSpectrumUse::albedo)
-            : nullptr;
+    const PbrtNodeRef color = entity.type == "subsurface" ? textures_.spectrum_or_null(
+                                  entity.parameters, "reflectance", PbrtSpectrumUse::albedo)
+                                                          : nullptr;
     if (color) draft.color = color;
-    entity.parameters.ignore({"mfp", "mfree", "sigma_a", "sigma_s", "name", "g", "scale", "eta", "roughness",
-                              "uroughness", "vroughness", "remaproughness", "reflectance", "filename", "color",
-                              "eumelanin", "pheomelanin", "beta_m", "beta_n", "alpha"});
+    entity.parameters.ignore({"mfp",        "mfree",          "sigma_a",     "sigma_s",   "name",
+                              "g",          "scale",          "eta",         "roughness", "uroughness",
+                              "vroughness", "remaproughness", "reflectance", "filename",  "color",
+                              "eumelanin",  "pheomelanin",    "beta_m",      "beta_n",    "alpha"});
     draft.material.metallic = 0;
     draft.material.specular = 0;
 }
@@ -350,174 +315,6 @@ void PbrtMaterials::fill(const PbrtEntity& entity, Draft& draft) {
                     quote(type) + did_you_mean(type, material_types));
     read_surface(p, draft);
     p.finish();
-}
-
-void PbrtMaterials::apply(const PbrtBaked& baked, std::optional<TextureRef>& ref, Draft& draft) {
-    ref = baked.texture;
-    draft.by_domain = draft.by_domain || baked.by_domain;
-    if (!ref || ref->uv_set == 0) return;
-    if (draft.mapping && !(*draft.mapping == baked.mapping))
-        scene_.warn(draft.place, "one material uses several mappings: only the last of them is read");
-    draft.mapping = baked.mapping;
-}
-
-void PbrtMaterials::finish_textures(Draft& draft) {
-    Material& m = draft.material;
-    const auto recolor = draft.recolor;
-    const bool cut = !(is_constant(draft.alpha) && draft.alpha->value.r >= 1);
-    std::vector<PbrtNodeRef> nodes{draft.color};
-    if (cut) nodes.push_back(draft.alpha);
-    const auto combine = [&](std::span<const Spectrum> v) {
-        Spectrum c = recolor ? recolor(v[0]) : v[0];
-        c = {std::clamp(c.r, 0.0f, 1.0f), std::clamp(c.g, 0.0f, 1.0f), std::clamp(c.b, 0.0f, 1.0f)};
-        return Vec4{c.r, c.g, c.b, cut ? std::clamp(v[1].r, 0.0f, 1.0f) : 1.0f};
-    };
-    const PbrtBaked color = textures_.bake(nodes, combine, true, !recolor && !cut, draft.domain, draft.place);
-    apply(color, m.base_color_texture, draft);
-    m.base_color = color.texture ? Spectrum{1} : Spectrum{color.value.x, color.value.y, color.value.z};
-    if (cut) {
-        m.alpha_mode = AlphaMode::blend;
-        m.base_alpha = color.texture ? 1.0f : color.value.w;
-    }
-    if (draft.normal)
-        apply(textures_.bake({draft.normal}, [](std::span<const Spectrum> v) { return opaque(v[0]); }, false,
-                             false, draft.domain, draft.place),
-              m.normal_texture, draft);
-    if (!draft.roughness) {
-        m.roughness = 0;
-        return;
-    }
-    const bool remap = draft.remap;
-    const PbrtBaked roughness = textures_.bake(
-        {draft.roughness}, [&](std::span<const Spectrum> v) { return Vec4{1, our_roughness(v[0].r, remap), 1, 1}; },
-        false, false, draft.domain, draft.place);
-    apply(roughness, m.metallic_roughness_texture, draft);
-    m.roughness = roughness.texture ? 1.0f : roughness.value.y;
-}
-
-void PbrtMaterials::emit(const PbrtEntity& light, double area, Draft& draft) {
-    const PbrtParameters& p = light.parameters;
-    if (light.type != "diffuse") {
-        const std::vector<std::string> types{"diffuse"};
-        refuse_pbrt(p.place(), "the area light \"diffuse\"",
-                    quote(light.type) + did_you_mean(light.type, types));
-    }
-    const std::string file = p.string("filename", "");
-    const PbrtParameter* color = p.find_spectrum("L");
-    if (color && !file.empty()) p.refuse("L", "either \"L\" or \"filename\"", "both");
-    Spectrum radiance = color ? pbrt_rgb(*color, PbrtSpectrumUse::illuminant, files_) : Spectrum{1};
-    double scale = p.number("scale", 1);
-    const double power = p.number("power", -1);
-    const bool two_sided = p.boolean("twosided", false);
-    if (scale < 0) p.refuse("scale", "a scale of at least 0", fmt::format("{:g}", scale));
-    double mean = 1, peak = 1;
-    if (!file.empty()) {
-        auto node = std::make_shared<PbrtNode>();
-        node->kind = PbrtNode::Kind::image;
-        node->wrap = Wrap::clamp;
-        node->pixels = textures_.pixels(file, "sRGB", p.place());
-        mean = peak = 0;
-        for (const Spectrum& c : node->pixels->rgb) {
-            mean += double{luminance(c)} / static_cast<double>(node->pixels->rgb.size());
-            peak = std::max(peak, double{max_component(c)});
-        }
-        const auto unit = [peak](std::span<const Spectrum> v) {
-            return opaque(peak > 0 ? v[0] / static_cast<float>(peak) : Spectrum{});
-        };
-        apply(textures_.bake({node}, unit, true, peak == 1, draft.domain, p.place()),
-              draft.material.emission_texture, draft);
-        radiance = Spectrum{static_cast<float>(peak)};
-    }
-    if (power > 0 && area > 0 && mean > 0) scale *= power / (mean * (two_sided ? 2 : 1) * area * 3.14159265358979);
-    p.finish();
-    draft.material.emission = radiance * static_cast<float>(scale);
-    draft.material.double_sided = two_sided;
-}
-
-bool PbrtMaterials::by_power(const PbrtShape& shape) const {
-    return shape.area_light && scene_.area_lights[*shape.area_light].parameters.number("power", -1) > 0;
-}
-
-bool PbrtMaterials::needs_uv(const PbrtShape& shape) {
-    const PbrtEntity& entity = find(shape.material);
-    const PbrtParameters& p = shape.entity.parameters;
-    if (p.find_texture("alpha")) return true;
-    if (shape.area_light && scene_.area_lights[*shape.area_light].parameters.has("filename")) return true;
-    const std::string key = fmt::format("{}:{}", shape.material.number, shape.material.name);
-    if (const auto it = needs_uv_.find(key); it != needs_uv_.end()) return it->second;
-    bool textured = entity.type == "mix" || entity.parameters.has("normalmap");
-    for (const char* name : {"reflectance", "roughness", "uroughness", "vroughness", "conductor.roughness",
-                             "conductor.uroughness", "conductor.vroughness", "transmittance"})
-        textured = textured || entity.parameters.find_texture(name) != nullptr;
-    return needs_uv_[key] = textured;
-}
-
-PbrtMaterials::Binding PbrtMaterials::make(const PbrtShape& shape, const PbrtEntity& entity,
-                                           const std::array<Vec2, 2>& domain, double area) {
-    Draft draft;
-    draft.place = shape.entity.parameters.place();
-    draft.domain = domain;
-    fill(entity, draft);
-    draft.material.name = shape.material.name.empty()
-                              ? fmt::format("{} {}", entity.type, shape.material.number)
-                              : shape.material.name;
-    draft.alpha = textures_.number(shape.entity.parameters, "alpha", 1);
-    const bool cut_out = is_constant(draft.alpha) && draft.alpha->value.r <= 0;
-    if (shape.area_light) {
-        emit(scene_.area_lights[*shape.area_light], area, draft);
-        if (!draft.visible) {
-            draft.visible = true;
-            draft.color = constant_node({});
-            draft.material.metallic = draft.material.specular = 0;
-            scene_.warn(draft.place, "a light on an interface is read as one on a black surface");
-        }
-        if (cut_out) {
-            draft.alpha = constant_node(Spectrum{1});
-            scene_.warn(draft.place, "an invisible area light (\"alpha\" 0) is read as a visible one");
-        }
-    } else if (cut_out) {
-        draft.visible = false;
-    }
-    if (!draft.visible) return {{}, {}, false, false};
-    finish_textures(draft);
-    out_.materials.push_back(std::move(draft.material));
-    return {static_cast<MaterialId>(out_.materials.size() - 1), draft.mapping, true, draft.by_domain};
-}
-
-PbrtMaterials::Binding PbrtMaterials::bind(const PbrtShape& shape, const std::array<Vec2, 2>& uv_domain,
-                                           double area) {
-    const PbrtEntity& entity = find(shape.material);
-    const PbrtParameters& p = shape.entity.parameters;
-    const PbrtParameter* alpha = p.find_texture("alpha");
-    const bool powered = by_power(shape);
-    std::string key = fmt::format("{}:{}|{}|{}:{:.9g}|{:.5g}", shape.material.number, shape.material.name,
-                                  shape.area_light ? static_cast<long>(*shape.area_light) : -1L,
-                                  alpha ? alpha->strings[0] : "", p.number("alpha", 1), powered ? area : 0.0);
-    // Graphs that combine images are baked over the mesh's own range of u and v, in whole steps.
-    const std::array<Vec2, 2> domain{Vec2{std::floor(uv_domain[0].x + 1e-4f), std::floor(uv_domain[0].y + 1e-4f)},
-                                     Vec2{std::ceil(uv_domain[1].x - 1e-4f), std::ceil(uv_domain[1].y - 1e-4f)}};
-    auto it = made_.find(key);
-    if (it != made_.end() && it->second.by_domain) {
-        key += fmt::format("|{:g},{:g},{:g},{:g}", domain[0].x, domain[0].y, domain[1].x, domain[1].y);
-        it = made_.find(key);
-    }
-    if (it != made_.end()) return it->second;
-    const Binding binding = make(shape, entity, domain, area);
-    if (binding.by_domain) {
-        made_.try_emplace(key, binding);
-        key += fmt::format("|{:g},{:g},{:g},{:g}", domain[0].x, domain[0].y, domain[1].x, domain[1].y);
-    }
-    return made_[key] = binding;
-}
-
-void PbrtMaterials::check_unused() {
-    const auto check = [&](const PbrtEntity& entity) {
-        Draft draft;
-        draft.place = entity.parameters.place();
-        fill(entity, draft);
-    };
-    for (const PbrtEntity& entity : scene_.materials) check(entity);
-    for (const auto& [name, entity] : scene_.named_materials) check(entity);
 }
 
 }  // namespace relumine

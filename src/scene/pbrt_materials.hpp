@@ -6,16 +6,18 @@
 
 namespace relumine {
 
-/// How pbrt's dielectric coat over a diffuse base reflects, as the albedo that our coat needs under it.
+/// What the diffuse base under pbrt's dielectric coat reflects, with the light that the coat throws back.
 class CoatedAlbedo {
   public:
-    CoatedAlbedo(double eta, double thickness);
+    /// `bounces`: how often light meets the base at most.
+    CoatedAlbedo(double eta, double thickness, int bounces);
 
-    /// The base of our layering that reflects as much light as pbrt's base of albedo `base`.
-    [[nodiscard]] float equivalent(float base) const;
+    /// CoatedDiffuse::base over pbrt's base of albedo `base`.
+    [[nodiscard]] float base(float albedo) const;
 
   private:
-    double enter_, leave_, inside_, ours_;  // shares of diffuse light
+    double through_, trapped_;  // shares of light: on its way in and out; reflected back inside
+    int bounces_;
 };
 
 /// Makes materials on demand, one for each combination of material, area light and cut-out.

@@ -120,7 +120,8 @@ namespace {
 
 const PbrtParameter* single(const PbrtParameter* p, std::size_t values, std::size_t found) {
     if (p && found != values)
-        refuse_pbrt(p->place, fmt::format("{} value{} for {}", values, values == 1 ? "" : "s", quote(p->name)),
+        refuse_pbrt(p->place,
+                    fmt::format("{} value{} for {}", values, values == 1 ? "" : "s", quote(p->name)),
                     fmt::format("{}", found));
     return p;
 }
@@ -228,6 +229,18 @@ bool PbrtParameters::has(std::string_view name) const {
     return std::ranges::any_of(parameters_, [&](const PbrtParameter& p) { return p.name == name; });
 }
 
+std::string PbrtParameters::fingerprint() const {
+    std::string text;
+    for (const PbrtParameter& p : parameters_) {
+        text += fmt::format("{} {}", p.type, p.name);
+        for (const double x : p.numbers) text += fmt::format(" {}", x);
+        for (const std::string& s : p.strings) text += ' ' + s;
+        for (const bool b : p.booleans) text += b ? " true" : " false";
+        text += '\n';
+    }
+    return text;
+}
+
 void PbrtParameters::finish() const {
     for (const PbrtParameter& p : parameters_) {
         if (p.optional || used_.contains(p.type + ' ' + p.name)) continue;
@@ -243,8 +256,7 @@ void PbrtParameters::finish() const {
 void PbrtParameters::refuse(std::string_view name, const std::string& expected,
                             const std::string& found) const {
     for (const PbrtParameter& p : parameters_)
-        if (p.name == name)
-            refuse_pbrt(p.place, fmt::format("{} for {}", expected, quote(name)), found);
+        if (p.name == name) refuse_pbrt(p.place, fmt::format("{} for {}", expected, quote(name)), found);
     refuse_pbrt(place_, fmt::format("{} {} for {}", quote(owner_), expected, quote(name)), found);
 }
 

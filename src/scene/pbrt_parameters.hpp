@@ -67,6 +67,9 @@ class PbrtParameters {
     /// Throws SceneError for the first parameter that nobody asked for, with the nearest name.
     void finish() const;
 
+    /// Equal for equal parameters.
+    [[nodiscard]] std::string fingerprint() const;
+
     [[nodiscard]] const PbrtPlace& place() const { return place_; }
     [[nodiscard]] const std::string& owner() const { return owner_; }
     /// Throws SceneError at the parameter's place, or the directive's where it is not there.

@@ -335,14 +335,15 @@ void Parser::option(const PbrtToken&) {
 }
 
 void Parser::medium(const PbrtToken& token) {
-    (void)need_string("the name of a medium");
+    bool named = !need_string("the name of a medium").empty();
     if (token.is_word("MediumInterface")) {
         std::optional<PbrtToken> outside = next();
+        named = named || (outside && outside->kind == PbrtToken::Kind::string && !outside->text.empty());
         if (outside && outside->kind != PbrtToken::Kind::string) pending_ = std::move(outside);
     } else {
         (void)parameters();
     }
-    state_.ignore_media(token.place);
+    if (named) state_.ignore_media(token.place);
 }
 
 }  // namespace

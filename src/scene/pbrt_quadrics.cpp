@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// pbrt's spheres, disks, cylinders and bilinear patches, cut into triangles with exact normals at the vertices.
+// pbrt's spheres, disks, cylinders and bilinear patches, cut into triangles with exact normals at the
+// vertices.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -160,9 +161,8 @@ Mesh pbrt_bilinear_mesh(const PbrtParameters& p, const PbrtDetail& detail) {
     Mesh mesh;
     for (std::size_t i = 0; i + 3 < corners.size(); i += 4) {
         const auto take = [&](const auto& values) {
-            return Corners<std::decay_t<decltype(values[0])>>{{values[corners[i]], values[corners[i + 1]],
-                                                               values[corners[i + 2]],
-                                                               values[corners[i + 3]]}};
+            return Corners<std::decay_t<decltype(values[0])>>{
+                {values[corners[i]], values[corners[i + 1]], values[corners[i + 2]], values[corners[i + 3]]}};
         };
         const Corners<Vec3> position = take(positions);
         const Corners<Vec2> uv =
@@ -176,7 +176,8 @@ Mesh pbrt_bilinear_mesh(const PbrtParameters& p, const PbrtDetail& detail) {
                 const float v = static_cast<float>(k) / static_cast<float>(n);
                 const Vec2 st = uv.at(u, v);
                 mesh.positions.push_back(position.at(u, v));
-                mesh.normals.push_back(normals.empty() ? patch_normal(position, u, v) : take(normals).at(u, v));
+                mesh.normals.push_back(normals.empty() ? patch_normal(position, u, v)
+                                                       : take(normals).at(u, v));
                 mesh.uvs[0].push_back({st.x, 1 - st.y});
             }
         }

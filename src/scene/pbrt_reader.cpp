@@ -27,8 +27,9 @@ PbrtDetail detail_for(const PbrtScene& scene) {
     };
     count(scene.shapes);
     for (const auto& [name, shapes] : scene.objects) count(shapes);
-    if (curved <= 100) return {};
-    return curved <= 1000 ? PbrtDetail{128, 16} : PbrtDetail{64, 8};
+    if (curved <= 32) return {256, 32};
+    if (curved <= 256) return {128, 16};
+    return curved <= 2048 ? PbrtDetail{64, 8} : PbrtDetail{32, 4};
 }
 
 std::array<Vec2, 2> uv_range(const Mesh& mesh) {
@@ -54,7 +55,11 @@ double triangle_area(const Mesh& mesh, const Triangle& t, const Transform& world
 class ShapeBuilder {
   public:
     ShapeBuilder(PbrtScene& scene, PbrtFiles& files, SceneData& out)
-        : scene_(scene), files_(files), out_(out), materials_(scene, files, out), detail_(detail_for(scene)) {}
+        : scene_(scene),
+          files_(files),
+          out_(out),
+          materials_(scene, files, out),
+          detail_(detail_for(scene)) {}
 
     void place_all() {
         for (const PbrtShape& shape : scene_.shapes)
@@ -86,65 +91,92 @@ class ShapeBuilder {
         for (const Placed& part : placed->second) {
             if (out_.instances.size() >= max_instances)
                 refuse_pbrt(instance.place, fmt::format("at most {} instances", max_instances), "more");
-            out_.instances.push_back({part.mesh, instance.world_from_instance * part.object_from_mesh, false});
+            out_.instances.push_back(
+                {part.mesh, instance.world_from_instance * part.object_from_mesh, false});
         }
     }
 
     /// The shape's meshes: one for each material, which is one but for lights given by power.
     std::vector<MeshId> meshes(const PbrtShape& shape, const Transform& world_from_object) {
+        const std::string key = share_key(shape);
+        if (const auto it = shared_.find(key); it != shared_.end()) return {it->second};
         Mesh mesh = make_pbrt_mesh(shape, detail_, materials_.needs_uv(shape), files_, scene_);
         if (mesh.triangles.empty()) return {};
         spend(mesh, shape);
-        const bool single = !materials_.by_power(shape) || is_pbrt_quadric(shape.entity.type);
-        if (single) {
-            double area = 0;
-            for (const Triangle& t : mesh.triangles) area += triangle_area(mesh, t, world_from_object);
-            return add(shape, std::move(mesh), world_from_object, area);
-        }
-        // Each triangle is a light of that power, as in pbrt; those of equal area share a mesh.
+        if (materials_.by_power(shape) && !is_pbrt_quadric(shape.entity.type))
+            return power_meshes(shape, mesh, world_from_object);
+        double area = 0;
+        for (const Triangle& t : mesh.triangles) area += triangle_area(mesh, t, world_from_object);
+        return add(shape, std::move(mesh), world_from_object, area, key);
+    }
+
+    /// Equal for quadrics that may share a mesh; "" for other shapes.
+    [[nodiscard]] std::string share_key(const PbrtShape& shape) const {
+        if (!is_pbrt_quadric(shape.entity.type) || materials_.by_power(shape)) return "";
+        return fmt::format("{} {} {}:{} {}\n{}", shape.entity.type, shape.reverse_orientation,
+                           shape.material.number, shape.material.name,
+                           shape.area_light ? static_cast<long>(*shape.area_light) : -1L,
+                           shape.entity.parameters.fingerprint());
+    }
+
+    /// Each triangle is a light of that power, as in pbrt; those of equal area share a mesh.
+    std::vector<MeshId> power_meshes(const PbrtShape& shape, const Mesh& mesh,
+                                     const Transform& world_from_object) {
         std::map<std::string, Mesh> by_area;
         std::map<std::string, double> areas;
         const int pieces = shape.entity.type == "bilinearmesh" ? 2 : 1;
         for (const Triangle& t : mesh.triangles) {
             const double area = pieces * triangle_area(mesh, t, world_from_object);
             const std::string key = fmt::format("{:.4g}", area);
-            Mesh& part = by_area[key];
-            if (part.triangles.empty()) {
-                part = mesh;
-                part.triangles.clear();
+            const auto [part, inserted] = by_area.try_emplace(key);
+            if (inserted) {
+                if (by_area.size() > max_powers)
+                    refuse_pbrt(
+                        shape.entity.parameters.place(),
+                        fmt::format("at most {} areas of triangles in a light given by power", max_powers),
+                        "more");
+                part->second = mesh;
+                part->second.triangles.clear();
                 areas[key] = area;
             }
-            part.triangles.push_back(t);
+            part->second.triangles.push_back(t);
         }
         std::vector<MeshId> ids;
         for (auto& [key, part] : by_area)
-            for (const MeshId id : add(shape, std::move(part), world_from_object, areas[key])) ids.push_back(id);
+            for (const MeshId id : add(shape, std::move(part), world_from_object, areas[key], ""))
+                ids.push_back(id);
         return ids;
     }
 
-    std::vector<MeshId> add(const PbrtShape& shape, Mesh mesh, const Transform& world_from_object, double area) {
+    std::vector<MeshId> add(const PbrtShape& shape, Mesh mesh, const Transform& world_from_object,
+                            double area, const std::string& key) {
         const PbrtMaterials::Binding binding = materials_.bind(shape, uv_range(mesh), area);
         if (!binding.visible) return {};
         mesh.material = binding.material;
         if (binding.mapping) add_mapped_uvs(mesh, *binding.mapping, world_from_object);
         out_.meshes.push_back(std::move(mesh));
-        return {static_cast<MeshId>(out_.meshes.size() - 1)};
+        const auto id = static_cast<MeshId>(out_.meshes.size() - 1);
+        if (!key.empty() && !binding.mapping) shared_[key] = id;
+        return {id};
     }
 
     void spend(const Mesh& mesh, const PbrtShape& shape) {
         elements_ += mesh.positions.size() + mesh.triangles.size();
         if (elements_ > max_elements)
-            refuse_pbrt(shape.entity.parameters.place(), "at most 2^30 vertices and triangles in all", "more");
+            refuse_pbrt(shape.entity.parameters.place(), "at most 2^30 vertices and triangles in all",
+                        "more");
     }
 
     static constexpr std::size_t max_elements = std::size_t{1} << 30;
     static constexpr std::size_t max_instances = 100'000'000;
+    static constexpr std::size_t max_powers = 1000;
     PbrtScene& scene_;
     PbrtFiles& files_;
     SceneData& out_;
     PbrtMaterials materials_;
     PbrtDetail detail_;
     std::map<std::string, std::vector<Placed>> objects_;
+    std::map<std::string, MeshId> shared_;
     std::size_t elements_ = 0;
 };
 

@@ -56,8 +56,7 @@ Mesh ply_mesh(const PbrtParameters& p, PbrtFiles& files, PbrtScene& scene) {
     }
     for (const std::string& warning : warnings) scene.warn(p.place(), name + ": " + warning);
     mesh.colors.clear();  // pbrt has no vertex colours
-    if (p.find_texture("displacement"))
-        scene.warn(p.place(), "displacement of \"plymesh\" is not supported");
+    if (p.find_texture("displacement")) scene.warn(p.place(), "displacement of \"plymesh\" is not supported");
     p.ignore({"displacement.edgelength", "edgelength"});
     return mesh;
 }
@@ -102,8 +101,8 @@ void add_default_uv(Mesh& mesh) {
     mesh.triangles = std::move(split.triangles);
 }
 
-const std::vector<std::string> shape_types{"bilinearmesh", "curve",  "cylinder",     "disk",
-                                           "loopsubdiv",   "plymesh", "sphere", "trianglemesh"};
+const std::vector<std::string> shape_types{"bilinearmesh", "curve",   "cylinder", "disk",
+                                           "loopsubdiv",   "plymesh", "sphere",   "trianglemesh"};
 
 Mesh make_mesh(const PbrtShape& shape, const PbrtDetail& detail, PbrtFiles& files, PbrtScene& scene) {
     const std::string& type = shape.entity.type;

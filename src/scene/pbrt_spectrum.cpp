@@ -22,19 +22,19 @@ constexpr std::size_t table_size = (last_nm - first_nm) / step_nm + 1;
 
 // CIE 1931 2° standard observer and standard illuminant D65, every 10 nm from 380 nm [CIE15].
 constexpr std::array<double, table_size> cie_x{
-    .001368, .004243, .01431, .04351,  .13438,  .2839,   .34828,  .3362,   .2908,   .19536,  .09564,
-    .03201,  .0049,   .0093,  .06327,  .1655,   .2904,   .43345,  .5945,   .7621,   .9163,   1.0263,
-    1.0622,  1.0026,  .85445, .6424,   .4479,   .2835,   .1649,   .0874,   .04677,  .0227,   .011359,
-    .00579,  .002899, .00144, .00069,  .000332, .000166, .000083, .000042};
+    .001368, .004243, .01431, .04351, .13438,  .2839,   .34828,  .3362,  .2908,  .19536, .09564,
+    .03201,  .0049,   .0093,  .06327, .1655,   .2904,   .43345,  .5945,  .7621,  .9163,  1.0263,
+    1.0622,  1.0026,  .85445, .6424,  .4479,   .2835,   .1649,   .0874,  .04677, .0227,  .011359,
+    .00579,  .002899, .00144, .00069, .000332, .000166, .000083, .000042};
 constexpr std::array<double, table_size> cie_y{
-    .000039, .00012,  .000396, .00121, .004,    .0116,  .023,   .038,   .06,   .09098, .13902,
-    .20802,  .323,    .503,    .71,    .862,    .954,   .99495, .995,   .952,  .87,    .757,
-    .631,    .503,    .381,    .265,   .175,    .107,   .061,   .032,   .017,  .00821, .004102,
+    .000039, .00012,  .000396, .00121,  .004,   .0116,  .023,   .038,   .06,  .09098, .13902,
+    .20802,  .323,    .503,    .71,     .862,   .954,   .99495, .995,   .952, .87,    .757,
+    .631,    .503,    .381,    .265,    .175,   .107,   .061,   .032,   .017, .00821, .004102,
     .002091, .001047, .00052,  .000249, .00012, .00006, .00003, .000015};
-constexpr std::array<double, table_size> cie_z{
-    .00645, .02005, .06785, .2074, .6456, 1.3856, 1.74706, 1.77211, 1.6692, 1.28764, .81295,
-    .46518, .272,   .1582,  .07825, .04216, .0203, .00875, .0039,  .0021,  .00165,  .0011,
-    .0008,  .00034, .00019, .00005, .00002};
+constexpr std::array<double, table_size> cie_z{.00645,  .02005, .06785,  .2074,  .6456,  1.3856, 1.74706,
+                                               1.77211, 1.6692, 1.28764, .81295, .46518, .272,   .1582,
+                                               .07825,  .04216, .0203,   .00875, .0039,  .0021,  .00165,
+                                               .0011,   .0008,  .00034,  .00019, .00005, .00002};
 constexpr std::array<double, table_size> cie_d65{
     49.9755, 54.6482, 82.7549, 91.486,  93.4318, 86.6823, 104.865, 117.008, 117.812, 114.861, 115.923,
     108.811, 109.354, 107.802, 104.79,  107.689, 104.405, 104.046, 100,     96.3342, 95.788,  88.6856,
@@ -121,11 +121,21 @@ struct NamedLight {
     double x, y;  // chromaticity
 };
 constexpr std::array<NamedLight, 16> named_lights{{
-    {"stdillum-A", .44757, .40745},   {"stdillum-D50", .34567, .3585},  {"stdillum-D65", .3127, .329},
-    {"stdillum-F1", .3131, .33727},   {"stdillum-F2", .37208, .37529},  {"stdillum-F3", .4091, .3943},
-    {"stdillum-F4", .44018, .40329},  {"stdillum-F5", .31379, .34531},  {"stdillum-F6", .3779, .38835},
-    {"stdillum-F7", .31292, .32933},  {"stdillum-F8", .34588, .35875},  {"stdillum-F9", .37417, .37281},
-    {"stdillum-F10", .34609, .35986}, {"stdillum-F11", .38052, .37713}, {"stdillum-F12", .43695, .40441},
+    {"stdillum-A", .44757, .40745},
+    {"stdillum-D50", .34567, .3585},
+    {"stdillum-D65", .3127, .329},
+    {"stdillum-F1", .3131, .33727},
+    {"stdillum-F2", .37208, .37529},
+    {"stdillum-F3", .4091, .3943},
+    {"stdillum-F4", .44018, .40329},
+    {"stdillum-F5", .31379, .34531},
+    {"stdillum-F6", .3779, .38835},
+    {"stdillum-F7", .31292, .32933},
+    {"stdillum-F8", .34588, .35875},
+    {"stdillum-F9", .37417, .37281},
+    {"stdillum-F10", .34609, .35986},
+    {"stdillum-F11", .38052, .37713},
+    {"stdillum-F12", .43695, .40441},
     {"illum-acesD60", .32168, .33767},
 }};
 
@@ -146,7 +156,8 @@ std::vector<double> read_pairs(const PbrtParameter& parameter, PbrtFiles& files)
 
 void check_pairs(std::span<const double> pairs, const PbrtParameter& parameter) {
     if (pairs.size() < 2 || pairs.size() % 2 != 0)
-        refuse_pbrt(parameter.place, "pairs of wavelength and value", fmt::format("{} numbers", pairs.size()));
+        refuse_pbrt(parameter.place, "pairs of wavelength and value",
+                    fmt::format("{} numbers", pairs.size()));
     for (std::size_t i = 2; i < pairs.size(); i += 2)
         if (!(pairs[i] > pairs[i - 2]))
             refuse_pbrt(parameter.place, "increasing wavelengths",
@@ -212,9 +223,10 @@ Spectrum to_rec709(Spectrum c, PbrtColorSpace space, PbrtSpectrumUse use) {
     static constexpr Matrix rec2020{{{1.6604910, -.5876411, -.0728499},
                                      {-.1245505, 1.1328999, -.0083494},
                                      {-.0181508, -.1005789, 1.1187297}}};
-    static constexpr Matrix aces{{{2.5579783, -1.1192921, -.3917498},  // without chromatic adaptation: white is D60
-                                  {-.2779919, 1.3660475, -.0934895},
-                                  {-.0171748, -.1485647, 1.0812775}}};
+    static constexpr Matrix aces{
+        {{2.5579783, -1.1192921, -.3917498},  // without chromatic adaptation: white is D60
+         {-.2779919, 1.3660475, -.0934895},
+         {-.0171748, -.1485647, 1.0812775}}};
     if (space == PbrtColorSpace::srgb) return c;
     const Matrix& m = space == PbrtColorSpace::dci_p3    ? p3
                       : space == PbrtColorSpace::rec2020 ? rec2020

@@ -236,8 +236,7 @@ PbrtScene PbrtState::finish(const PbrtPlace& end) {
     if (!in_world_) refuse_pbrt(end, "WorldBegin", "the end of the file");
     if (!stack_.empty())
         refuse_pbrt(end,
-                    fmt::format("{} for the one at {}",
-                                stack_.back().object ? "ObjectEnd" : "AttributeEnd",
+                    fmt::format("{} for the one at {}", stack_.back().object ? "ObjectEnd" : "AttributeEnd",
                                 stack_.back().place.text()),
                     "the end of the file");
     return std::move(scene_);

@@ -48,8 +48,7 @@ Ring make_ring(const std::map<Index, Index>& next) {
 std::vector<Ring> make_rings(const std::vector<Triangle>& triangles, std::size_t vertices) {
     std::vector<std::map<Index, Index>> next(vertices);
     for (const Triangle& t : triangles)
-        for (std::size_t i = 0; i < 3; ++i)
-            next[t.vertex[i]][t.vertex[(i + 1) % 3]] = t.vertex[(i + 2) % 3];
+        for (std::size_t i = 0; i < 3; ++i) next[t.vertex[i]][t.vertex[(i + 1) % 3]] = t.vertex[(i + 2) % 3];
     std::vector<Ring> rings(vertices);
     for (std::size_t i = 0; i < vertices; ++i)
         if (!next[i].empty()) rings[i] = make_ring(next[i]);
@@ -60,15 +59,12 @@ std::vector<Ring> make_rings(const std::vector<Triangle>& triangles, std::size_t
 float beta(std::size_t valence) {
     return valence == 3 ? 3.0f / 16 : 3.0f / (8 * static_cast<float>(valence));
 }
-float gamma(std::size_t valence) {
-    return 1 / (static_cast<float>(valence) + 3 / (8 * beta(valence)));
-}
+float gamma(std::size_t valence) { return 1 / (static_cast<float>(valence) + 3 / (8 * beta(valence))); }
 
 /// A weighted mean with the neighbours: `b` each inside, `edge` each of the two along a boundary.
 Vec3 smoothed(const std::vector<Vec3>& p, std::size_t i, const Ring& ring, float b, float edge) {
     if (ring.around.empty()) return p[i];
-    if (ring.boundary)
-        return p[i] * (1 - 2 * edge) + (p[ring.around.front()] + p[ring.around.back()]) * edge;
+    if (ring.boundary) return p[i] * (1 - 2 * edge) + (p[ring.around.front()] + p[ring.around.back()]) * edge;
     Vec3 sum = p[i] * (1 - static_cast<float>(ring.around.size()) * b);
     for (const Index neighbour : ring.around) sum += p[neighbour] * b;
     return sum;

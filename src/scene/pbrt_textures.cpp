@@ -21,6 +21,12 @@ namespace {
 
 constexpr int max_texture_depth = 64;
 
+/// Kinds that are not read, whose parameters are not checked.
+const std::vector<std::string> procedural_types{"dots", "fbm", "wrinkled", "windy", "marble", "ptex"};
+bool is_procedural(const std::string& type) {
+    return std::ranges::find(procedural_types, type) != procedural_types.end();
+}
+
 PbrtMapping read_mapping(const PbrtTexture& texture) {
     const PbrtParameters& p = texture.entity.parameters;
     PbrtMapping m;
@@ -62,7 +68,8 @@ std::function<double(double)> decoder(const std::string& encoding, const PbrtPla
 bool is_integer_picture(std::span<const std::uint8_t> bytes) {
     const auto begins = [&](std::initializer_list<int> magic) {
         return bytes.size() >= magic.size()
-               && std::equal(magic.begin(), magic.end(), bytes.begin(), [](int a, std::uint8_t b) { return a == b; });
+               && std::equal(magic.begin(), magic.end(), bytes.begin(),
+                             [](int a, std::uint8_t b) { return a == b; });
     };
     return begins({0x89, 'P', 'N', 'G'}) || begins({0xff, 0xd8});
 }
@@ -70,8 +77,7 @@ bool is_integer_picture(std::span<const std::uint8_t> bytes) {
 PbrtPixels integer_pixels(ByteImage image, const std::string& encoding, const PbrtPlace& place) {
     const auto decode = decoder(encoding, place);
     PbrtPixels pixels{image.width, image.height, {}, {}};
-    const std::size_t count =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     pixels.rgb.reserve(count);
     std::array<float, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(decode(double(i) / 255));
@@ -173,62 +179,68 @@ PbrtNodeRef PbrtTextures::input(const PbrtParameters& p, std::string_view name, 
                     : spectrum(p, name, Spectrum{static_cast<float>(otherwise)}, use);
 }
 
+PbrtNodeRef PbrtTextures::mix_node(const PbrtParameters& p, bool is_float, PbrtSpectrumUse use,
+                                   PbrtNodeRef amount) {
+    auto node = std::make_shared<PbrtNode>();
+    node->kind = PbrtNode::Kind::mix;
+    node->input = {input(p, "tex1", 0, is_float, use), input(p, "tex2", 1, is_float, use), std::move(amount)};
+    return node;
+}
+
+PbrtNodeRef PbrtTextures::checkerboard_node(const PbrtTexture& texture, bool is_float, PbrtSpectrumUse use) {
+    const PbrtParameters& p = texture.entity.parameters;
+    auto node = std::make_shared<PbrtNode>();
+    node->kind = PbrtNode::Kind::checkerboard;
+    node->input = {input(p, "tex1", 1, is_float, use), input(p, "tex2", 0, is_float, use), nullptr};
+    const int dimension = p.integer("dimension", 2);
+    if (dimension != 2 && dimension != 3) p.refuse("dimension", "2 or 3", fmt::format("{}", dimension));
+    if (dimension == 2) {
+        node->mapping = read_mapping(texture);
+        return node;
+    }
+    scene_.warn(p.place(), "a checkerboard in space is read as an even mix");
+    node->kind = PbrtNode::Kind::mix;
+    node->input[2] = constant_node(Spectrum{0.5f});
+    return node;
+}
+
+PbrtNodeRef PbrtTextures::bilerp_node(const PbrtTexture& texture, bool is_float, PbrtSpectrumUse use) {
+    auto node = std::make_shared<PbrtNode>();
+    node->kind = PbrtNode::Kind::bilerp;
+    node->mapping = read_mapping(texture);
+    const std::array<std::string_view, 4> names{"v00", "v01", "v10", "v11"};
+    for (std::size_t i = 0; i < 4; ++i)
+        node->corner[i] =
+            input(texture.entity.parameters, names[i], i % 2 == 0 ? 0 : 1, is_float, use)->value;
+    return node;
+}
+
 PbrtNodeRef PbrtTextures::make(const PbrtTexture& texture, bool is_float, PbrtSpectrumUse use) {
     const std::string& type = texture.entity.type;
     const PbrtParameters& p = texture.entity.parameters;
-    auto node = std::make_shared<PbrtNode>();
     if (type == "imagemap") return image_node(texture, is_float);
     if (type == "constant") return input(p, "value", 1, is_float, use);
+    if (type == "mix") return mix_node(p, is_float, use, number(p, "amount", 0.5));
+    if (type == "checkerboard") return checkerboard_node(texture, is_float, use);
+    if (type == "bilerp") return bilerp_node(texture, is_float, use);
     if (type == "scale") {
+        auto node = std::make_shared<PbrtNode>();
         node->kind = PbrtNode::Kind::scale;
         node->input = {input(p, "tex", 1, is_float, use), number(p, "scale", 1), nullptr};
-        return node;
-    }
-    if (type == "mix") {
-        node->kind = PbrtNode::Kind::mix;
-        node->input = {input(p, "tex1", 0, is_float, use), input(p, "tex2", 1, is_float, use),
-                       number(p, "amount", 0.5)};
         return node;
     }
     if (type == "directionmix") {
         scene_.warn(p.place(), "texture \"directionmix\" is read as an even mix");
         p.ignore({"dir"});
-        node->kind = PbrtNode::Kind::mix;
-        node->input = {input(p, "tex1", 0, is_float, use), input(p, "tex2", 1, is_float, use),
-                       constant_node(Spectrum{0.5f})};
-        return node;
+        return mix_node(p, is_float, use, constant_node(Spectrum{0.5f}));
     }
-    if (type == "checkerboard") {
-        node->kind = PbrtNode::Kind::checkerboard;
-        node->input = {input(p, "tex1", 1, is_float, use), input(p, "tex2", 0, is_float, use), nullptr};
-        const int dimension = p.integer("dimension", 2);
-        if (dimension != 2 && dimension != 3)
-            p.refuse("dimension", "2 or 3", fmt::format("{}", dimension));
-        if (dimension == 2) {
-            node->mapping = read_mapping(texture);
-            return node;
-        }
-        scene_.warn(p.place(), "a checkerboard in space is read as an even mix");
-        node->kind = PbrtNode::Kind::mix;
-        node->input[2] = constant_node(Spectrum{0.5f});
-        return node;
-    }
-    if (type == "bilerp") {
-        node->kind = PbrtNode::Kind::bilerp;
-        node->mapping = read_mapping(texture);
-        const std::array<std::string_view, 4> names{"v00", "v01", "v10", "v11"};
-        for (std::size_t i = 0; i < 4; ++i)
-            node->corner[i] = input(p, names[i], i % 2 == 0 ? 0 : 1, is_float, use)->value;
-        return node;
-    }
-    const std::vector<std::string> procedural{"dots", "fbm", "wrinkled", "windy", "marble", "ptex"};
-    if (std::ranges::find(procedural, type) != procedural.end()) {
+    if (is_procedural(type)) {
         scene_.warn(p.place(), fmt::format("texture {} is not supported and read as 0.5", quote(type)));
         return constant_node(Spectrum{0.5f});
     }
-    std::vector<std::string> all{"imagemap", "constant",     "scale", "mix",
+    std::vector<std::string> all{"imagemap", "constant",     "scale",       "mix",
                                  "bilerp",   "checkerboard", "directionmix"};
-    all.insert(all.end(), procedural.begin(), procedural.end());
+    all.insert(all.end(), procedural_types.begin(), procedural_types.end());
     refuse_pbrt(p.place(), "a texture among " + one_of(all), quote(type) + did_you_mean(type, all));
 }
 
@@ -250,10 +262,7 @@ PbrtNodeRef PbrtTextures::named(const Textures& textures, const PbrtParameter& r
     ++depth_;
     PbrtNodeRef node = make(it->second, is_float, use);
     --depth_;
-    const bool unread = it->second.entity.type == "dots" || it->second.entity.type == "fbm"
-                        || it->second.entity.type == "wrinkled" || it->second.entity.type == "windy"
-                        || it->second.entity.type == "marble" || it->second.entity.type == "ptex";
-    if (!unread) it->second.entity.parameters.finish();
+    if (!is_procedural(it->second.entity.type)) it->second.entity.parameters.finish();
     made_[key] = node;
     return node;
 }

@@ -16,9 +16,9 @@ namespace relumine {
 struct PbrtMapping {
     enum class Kind { uv, planar, spherical, cylindrical };
     Kind kind = Kind::uv;
-    std::array<double, 4> uv{1, 1, 0, 0};  // scales and offsets of u and v
+    std::array<double, 4> uv{1, 1, 0, 0};                    // scales and offsets of u and v
     std::array<double, 3> axis_u{1, 0, 0}, axis_v{0, 1, 0};  // planar
-    std::array<double, 2> offset{};                           // planar
+    std::array<double, 2> offset{};                          // planar
     Transform texture_from_world;
 
     bool operator==(const PbrtMapping&) const = default;
@@ -52,7 +52,7 @@ struct PbrtNode {
 struct PbrtBaked {
     Vec4 value;  // where there is no texture
     std::optional<TextureRef> texture;
-    PbrtMapping mapping;  // where its coordinates come from something else than uv: of uv set 1
+    PbrtMapping mapping;     // where its coordinates come from something else than uv: of uv set 1
     bool by_domain = false;  // made for one range of u and v alone
 };
 
@@ -90,9 +90,17 @@ class PbrtTextures {
     [[nodiscard]] PbrtNodeRef named(const Textures& textures, const PbrtParameter& reference, bool is_float,
                                     PbrtSpectrumUse use);
     [[nodiscard]] PbrtNodeRef image_node(const PbrtTexture& texture, bool is_float);
+    [[nodiscard]] PbrtNodeRef mix_node(const PbrtParameters& p, bool is_float, PbrtSpectrumUse use,
+                                       PbrtNodeRef amount);
+    [[nodiscard]] PbrtNodeRef checkerboard_node(const PbrtTexture& texture, bool is_float,
+                                                PbrtSpectrumUse use);
+    [[nodiscard]] PbrtNodeRef bilerp_node(const PbrtTexture& texture, bool is_float, PbrtSpectrumUse use);
     [[nodiscard]] PbrtNodeRef input(const PbrtParameters& p, std::string_view name, double otherwise,
                                     bool is_float, PbrtSpectrumUse use);
     [[nodiscard]] ImageId add_image(ByteImage image, const PbrtPlace& place);
+    struct Grid;
+    [[nodiscard]] Grid choose_grid(const std::vector<const PbrtNode*>& leaves,
+                                   const std::array<Vec2, 2>& domain, const PbrtPlace& place);
 
     PbrtScene& scene_;
     PbrtFiles& files_;
@@ -100,7 +108,7 @@ class PbrtTextures {
     std::map<std::string, PbrtNodeRef> made_;
     std::map<std::string, std::shared_ptr<const PbrtPixels>> pixels_;
     std::map<const ByteImage*, ImageId> shared_images_;
-    int depth_ = 0;               // of references between textures
+    int depth_ = 0;  // of references between textures
     std::size_t baked_texels_ = 0;
 };
 

@@ -67,8 +67,8 @@ std::optional<Transform> inverse(const Transform& t) {
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) inverse.m[i][j] = c.m[j][i] / det;
     for (std::size_t i = 0; i < 3; ++i)
-        inverse.m[i][3] = -(inverse.m[i][0] * t.m[0][3] + inverse.m[i][1] * t.m[1][3]
-                            + inverse.m[i][2] * t.m[2][3]);
+        inverse.m[i][3] =
+            -(inverse.m[i][0] * t.m[0][3] + inverse.m[i][1] * t.m[1][3] + inverse.m[i][2] * t.m[2][3]);
     return inverse;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,6 +63,9 @@ struct Material {
     bool solid = false;             // KHR_materials_volume with thickness > 0: refracts; else a thin sheet
     Spectrum attenuation_color{1};  // of light that went attenuation_distance through a solid
     float attenuation_distance = infinity;  // metres
+    bool coated_diffuse = false;    // the model CoatedDiffuse instead of glTF's: base_color is its base
+    Spectrum diffuse_transmission;  // not black: the model DiffuseTransmission; base_color is reflected
+    std::optional<TextureRef> diffuse_transmission_texture;  // RGB, sRGB
 };
 
 struct Triangle {
@@ -87,9 +91,20 @@ struct Instance {
     bool identity = false;  // set by finish_scene: the mesh is already in world space
 };
 
+/// How a light's intensity depends on the direction: a picture of factors, read without interpolation.
+struct LightPattern {
+    Transform light_from_world;  // its linear part
+    bool equal_area = true;      // a square of all directions, else a perspective picture around +Z
+    double half_width = 1,
+           half_height = 1;  // of the perspective picture, at unit distance; +Y is its upper edge
+    int width = 0, height = 0;
+    std::vector<Spectrum> factor;  // row-major, top row first
+};
+
 struct PointLight {
     Vec3 position;
-    Spectrum intensity;  // W·sr⁻¹
+    Spectrum intensity;                                     // W·sr⁻¹
+    std::shared_ptr<const LightPattern> pattern = nullptr;  // multiplies the intensity; null: even
 };
 struct SpotLight {
     Vec3 position;

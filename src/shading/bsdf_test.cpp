@@ -43,6 +43,8 @@ const std::vector<NamedBsdf>& rough_bsdfs() {
                                       Spectrum{1}, ggx(0.25f)}},
         {"layered metal", MetallicRoughness{Spectrum{0.3f}, Spectrum{0}, Spectrum{0}, Spectrum{0.4f},
                                             Spectrum{0.5f}, ggx(0.2f)}},
+        {"coated diffuse", CoatedDiffuse{Spectrum{0.4f, 0.3f, 0.1f}, 1.5f, ggx(0.25f)}},
+        {"diffuse transmission", DiffuseTransmission{Spectrum{0.3f}, Spectrum{0.5f, 0.4f, 0.2f}}},
     };
     return all;
 }

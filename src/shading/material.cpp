@@ -61,10 +61,25 @@ Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking)
         lerp(coat_f90, Spectrum{1}, metallic), ggx,     smooth};
 }
 
+Bsdf coated_diffuse(const Factors& f, float ior, Masking masking) {
+    return CoatedDiffuse{
+        f.base_color, ior, {std::clamp(f.alpha, smooth_alpha, 1.0f), masking}, f.alpha < smooth_alpha, true};
+}
+
+Bsdf diffuse_transmission(const SceneData& scene, const SurfacePoint& p, const Factors& f) {
+    const Material& m = *p.material;
+    Spectrum transmitted = m.diffuse_transmission;
+    if (m.diffuse_transmission_texture)
+        transmitted *= rgb(sample_texture(scene, *m.diffuse_transmission_texture, p.uv, Encoding::srgb));
+    return DiffuseTransmission{f.base_color, transmitted};
+}
+
 }  // namespace
 
 Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u) {
     const Factors f = factors_at(scene, p);
+    if (p.material->coated_diffuse) return coated_diffuse(f, p.material->ior, masking);
+    if (!is_black(p.material->diffuse_transmission)) return diffuse_transmission(scene, p, f);
     const float glass_share = f.transmission * (1 - f.metallic);
     if (u < glass_share) return glass(p, f, masking);
     return opaque_layers(f, glass_share > 0 ? f.metallic / (1 - glass_share) : f.metallic, p.material->ior,
@@ -83,7 +98,8 @@ std::optional<MetallicRoughness> as_layers(const Bsdf& bsdf) {
 UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(scene.materials.data()) {
     for (const Material& m : scene.materials) {
         const bool varies = m.base_color_texture || m.metallic_roughness_texture || m.transmission_texture
-                            || m.specular_texture || m.specular_color_texture || m.transmission > 0;
+                            || m.specular_texture || m.specular_color_texture || m.transmission > 0
+                            || m.diffuse_transmission_texture;
         SurfacePoint anywhere;
         anywhere.material = &m;
         bsdfs_.push_back(varies ? std::nullopt : std::optional(make_bsdf(scene, anywhere, masking, 0)));
