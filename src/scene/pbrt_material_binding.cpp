@@ -50,13 +50,15 @@ void PbrtMaterials::finish_textures(Draft& draft) {
         m.base_alpha = color.texture ? 1.0f : color.value.w;
     }
     if (draft.normal)
-        apply(textures_.bake({draft.normal}, [](std::span<const Spectrum> v) { return opaque(v[0]); }, false,
-                             false, draft.domain, draft.place),
+        apply(textures_.bake(
+                  {draft.normal}, [](std::span<const Spectrum> v) { return opaque(v[0]); }, false, false,
+                  draft.domain, draft.place),
               m.normal_texture, draft);
     if (draft.transmittance) {
         const auto clamped = [&](std::span<const Spectrum> v) {
             const Spectrum c = recolor ? recolor(v[0]) : v[0];
-            return opaque({std::clamp(c.r, 0.0f, 1.0f), std::clamp(c.g, 0.0f, 1.0f), std::clamp(c.b, 0.0f, 1.0f)});
+            return opaque(
+                {std::clamp(c.r, 0.0f, 1.0f), std::clamp(c.g, 0.0f, 1.0f), std::clamp(c.b, 0.0f, 1.0f)});
         };
         const PbrtBaked through =
             textures_.bake({draft.transmittance}, clamped, true, false, draft.domain, draft.place);
@@ -70,7 +72,10 @@ void PbrtMaterials::finish_textures(Draft& draft) {
     }
     const bool remap = draft.remap;
     const PbrtBaked roughness = textures_.bake(
-        {draft.roughness}, [&](std::span<const Spectrum> v) { return Vec4{1, our_roughness(v[0].r, remap), 1, 1}; },
+        {draft.roughness},
+        [&](std::span<const Spectrum> v) {
+            return Vec4{1, our_roughness(v[0].r, remap), 1, 1};
+        },
         false, false, draft.domain, draft.place);
     apply(roughness, m.metallic_roughness_texture, draft);
     m.roughness = roughness.texture ? 1.0f : roughness.value.y;
@@ -109,7 +114,8 @@ void PbrtMaterials::emit(const PbrtEntity& light, double area, Draft& draft) {
               draft.material.emission_texture, draft);
         radiance = Spectrum{static_cast<float>(peak)};
     }
-    if (power > 0 && area > 0 && mean > 0) scale *= power / (mean * (two_sided ? 2 : 1) * area * 3.14159265358979);
+    if (power > 0 && area > 0 && mean > 0)
+        scale *= power / (mean * (two_sided ? 2 : 1) * area * 3.14159265358979);
     p.finish();
     draft.material.emission = radiance * static_cast<float>(scale);
     draft.material.double_sided = two_sided;
@@ -159,10 +165,11 @@ PbrtMaterials::Binding PbrtMaterials::make(const PbrtShape& shape, const PbrtEnt
     } else if (cut_out) {
         draft.visible = false;
     }
-    if (!draft.visible) return {{}, {}, false, false};
+    if (!draft.visible) return {{}, {}, false, false, false};
     finish_textures(draft);
     out_.materials.push_back(std::move(draft.material));
-    return {static_cast<MaterialId>(out_.materials.size() - 1), draft.mapping, true, draft.by_domain};
+    return {static_cast<MaterialId>(out_.materials.size() - 1), draft.mapping, true, draft.by_domain,
+            draft.inside_out};
 }
 
 PbrtMaterials::Binding PbrtMaterials::bind(const PbrtShape& shape, const std::array<Vec2, 2>& uv_domain,
@@ -175,8 +182,9 @@ PbrtMaterials::Binding PbrtMaterials::bind(const PbrtShape& shape, const std::ar
                                   shape.area_light ? static_cast<long>(*shape.area_light) : -1L,
                                   alpha ? alpha->strings[0] : "", p.number("alpha", 1), powered ? area : 0.0);
     // Graphs that combine images are baked over the mesh's own range of u and v, in whole steps.
-    const std::array<Vec2, 2> domain{Vec2{std::floor(uv_domain[0].x + 1e-4f), std::floor(uv_domain[0].y + 1e-4f)},
-                                     Vec2{std::ceil(uv_domain[1].x - 1e-4f), std::ceil(uv_domain[1].y - 1e-4f)}};
+    const std::array<Vec2, 2> domain{
+        Vec2{std::floor(uv_domain[0].x + 1e-4f), std::floor(uv_domain[0].y + 1e-4f)},
+        Vec2{std::ceil(uv_domain[1].x - 1e-4f), std::ceil(uv_domain[1].y - 1e-4f)}};
     auto it = made_.find(key);
     if (it != made_.end() && it->second.by_domain) {
         key += fmt::format("|{:g},{:g},{:g},{:g}", domain[0].x, domain[0].y, domain[1].x, domain[1].y);

@@ -11,9 +11,9 @@ struct PbrtMaterials::Draft {
     Material material;
     PbrtPlace place;
     std::string type;
-    PbrtNodeRef color = constant_node(Spectrum{0.5f});           // before `recolor`
-    std::function<Spectrum(Spectrum)> recolor;                   // to our base colour; empty: the same
-    PbrtNodeRef roughness;                                       // as pbrt says it; null: perfectly smooth
+    PbrtNodeRef color = constant_node(Spectrum{0.5f});  // before `recolor`
+    std::function<Spectrum(Spectrum)> recolor;          // to our base colour; empty: the same
+    PbrtNodeRef roughness;                              // as pbrt says it; null: perfectly smooth
     bool remap = true;
     PbrtNodeRef alpha = constant_node(Spectrum{1});
     std::optional<PbrtMapping> mapping;
@@ -21,6 +21,7 @@ struct PbrtMaterials::Draft {
     PbrtNodeRef normal;         // of the normal map, or null
     PbrtNodeRef transmittance;  // diffuse; null: none
     bool visible = true, by_domain = false;
+    bool inside_out = false;  // an index below 1 is one above, seen from the other side
 };
 
 }  // namespace relumine

@@ -51,7 +51,8 @@ Spectrum per_channel(Spectrum a, Spectrum b, const std::function<double(double, 
 }  // namespace
 
 CoatedAlbedo::CoatedAlbedo(double eta, double thickness, int bounces) : bounces_(bounces) {
-    const double inside = 1 - (1 - diffuse_fresnel(eta)) / (eta * eta);
+    entering_ = 1 - diffuse_fresnel(eta);
+    const double inside = 1 - entering_ / (eta * eta);
     const double critical = std::sqrt(std::max(0.0, 1 - 1 / (eta * eta)));
     const double straight = std::exp(-2 * thickness / (1 + critical));  // one way through, inside the cone
     const double there_and_back = critical > 0 ? std::exp(-4 * thickness / critical) : 1;  // outside of it
@@ -61,7 +62,8 @@ CoatedAlbedo::CoatedAlbedo(double eta, double thickness, int bounces) : bounces_
 
 float CoatedAlbedo::base(float albedo) const {
     const double a = std::clamp(double{albedo}, 0.0, 1.0), again = a * trapped_;
-    return static_cast<float>(std::min(1.0, a * through_ * (1 - std::pow(again, bounces_)) / (1 - again)));
+    return static_cast<float>(
+        std::min(1.0, entering_ * a * through_ * (1 - std::pow(again, bounces_)) / (1 - again)));
 }
 
 const PbrtEntity& PbrtMaterials::find(const PbrtMaterialRef& ref) const {
@@ -142,6 +144,7 @@ void PbrtMaterials::coated_diffuse(const PbrtEntity& entity, Draft& draft) {
     const CoatedAlbedo coat(std::max(eta, 1.0), thick, (depth + 1) / 2);
     draft.recolor = [coat](Spectrum c) { return Spectrum{coat.base(c.r), coat.base(c.g), coat.base(c.b)}; };
     draft.material.coated_diffuse = true;
+    draft.material.specular = static_cast<float>(coat.entering());
     draft.material.metallic = 0;
     draft.material.ior = static_cast<float>(std::max(eta, 1.0));
 }
@@ -200,8 +203,8 @@ void PbrtMaterials::dielectric(const PbrtEntity& entity, Draft& draft) {
     double eta = read_eta(p, "eta");
     if (!thin) read_roughness(p, "", draft);
     if (eta < 1) {
-        scene_.warn(p.place(), fmt::format("an index of refraction of {:g} is read as 1", eta));
-        eta = 1;
+        eta = 1 / eta;
+        draft.inside_out = !thin;
     }
     draft.color = constant_node(Spectrum{1});
     draft.material.metallic = 0;

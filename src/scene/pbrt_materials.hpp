@@ -12,11 +12,13 @@ class CoatedAlbedo {
     /// `bounces`: how often light meets the base at most.
     CoatedAlbedo(double eta, double thickness, int bounces);
 
-    /// CoatedDiffuse::base over pbrt's base of albedo `base`.
+    /// CoatedDiffuse::base for a base of albedo `albedo`, times `entering()`, which brings it to [0, 1].
     [[nodiscard]] float base(float albedo) const;
+    /// The share of diffuse light that the coat lets in.
+    [[nodiscard]] double entering() const { return entering_; }
 
   private:
-    double through_, trapped_;  // shares of light: on its way in and out; reflected back inside
+    double entering_, through_, trapped_;  // shares of light: on its way in and out; reflected back inside
     int bounces_;
 };
 
@@ -32,6 +34,7 @@ class PbrtMaterials {
         std::optional<PbrtMapping> mapping;  // of uv set 1
         bool visible = true;                 // false: an interface between media, or cut out whole
         bool by_domain = false;              // baked over one range of u and v
+        bool inside_out = false;             // the mesh's sides must change places
     };
 
     /// Whether the material reads textures by uv, so that the mesh needs texture coordinates.

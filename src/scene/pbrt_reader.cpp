@@ -51,6 +51,11 @@ double triangle_area(const Mesh& mesh, const Triangle& t, const Transform& world
     return 0.5 * double{length(cross(b - a, c - a))};
 }
 
+void turn_inside_out(Mesh& mesh) {
+    for (Triangle& t : mesh.triangles) std::swap(t.vertex[1], t.vertex[2]);
+    for (Vec3& n : mesh.normals) n = -n;
+}
+
 /// Makes meshes of shapes, with their materials.
 class ShapeBuilder {
   public:
@@ -103,10 +108,12 @@ class ShapeBuilder {
         Mesh mesh = make_pbrt_mesh(shape, detail_, materials_.needs_uv(shape), files_, scene_);
         if (mesh.triangles.empty()) return {};
         spend(mesh, shape);
-        if (materials_.by_power(shape) && !is_pbrt_quadric(shape.entity.type))
+        const bool patches = shape.entity.type == "bilinearmesh";  // each is a light: the mean of their areas
+        if (materials_.by_power(shape) && !is_pbrt_quadric(shape.entity.type) && !patches)
             return power_meshes(shape, mesh, world_from_object);
         double area = 0;
         for (const Triangle& t : mesh.triangles) area += triangle_area(mesh, t, world_from_object);
+        if (patches) area /= std::max(1.0, double(shape.entity.parameters.indices("indices").size() / 4));
         return add(shape, std::move(mesh), world_from_object, area, key);
     }
 
@@ -124,9 +131,8 @@ class ShapeBuilder {
                                      const Transform& world_from_object) {
         std::map<std::string, Mesh> by_area;
         std::map<std::string, double> areas;
-        const int pieces = shape.entity.type == "bilinearmesh" ? 2 : 1;
         for (const Triangle& t : mesh.triangles) {
-            const double area = pieces * triangle_area(mesh, t, world_from_object);
+            const double area = triangle_area(mesh, t, world_from_object);
             const std::string key = fmt::format("{:.4g}", area);
             const auto [part, inserted] = by_area.try_emplace(key);
             if (inserted) {
@@ -153,6 +159,7 @@ class ShapeBuilder {
         const PbrtMaterials::Binding binding = materials_.bind(shape, uv_range(mesh), area);
         if (!binding.visible) return {};
         mesh.material = binding.material;
+        if (binding.inside_out) turn_inside_out(mesh);
         if (binding.mapping) add_mapped_uvs(mesh, *binding.mapping, world_from_object);
         out_.meshes.push_back(std::move(mesh));
         const auto id = static_cast<MeshId>(out_.meshes.size() - 1);

@@ -76,18 +76,22 @@ bool is_integer_picture(std::span<const std::uint8_t> bytes) {
 
 PbrtPixels integer_pixels(ByteImage image, const std::string& encoding, const PbrtPlace& place) {
     const auto decode = decoder(encoding, place);
-    PbrtPixels pixels{image.width, image.height, {}, {}};
+    PbrtPixels pixels{image.width, image.height, {}, {}, {}};
     const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     pixels.rgb.reserve(count);
     std::array<float, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(decode(double(i) / 255));
+    bool transparent = false;
     for (std::size_t i = 0; i < count; ++i) {
         const auto channel = [&](std::size_t c) {
             return image.rgba8.empty() ? static_cast<float>(decode(image.rgba16[4 * i + c] / 65535.0))
                                        : table[image.rgba8[4 * i + c]];
         };
         pixels.rgb.push_back({channel(0), channel(1), channel(2)});
+        pixels.alpha.push_back(channel(3));  // decoded like the others, as in pbrt
+        transparent = transparent || pixels.alpha.back() < 1;
     }
+    if (!transparent) pixels.alpha.clear();
     if (encoding == "sRGB" && !image.rgba8.empty())
         pixels.srgb8 = std::make_shared<const ByteImage>(std::move(image));
     return pixels;
@@ -95,7 +99,7 @@ PbrtPixels integer_pixels(ByteImage image, const std::string& encoding, const Pb
 
 PbrtPixels float_pixels(const Image& image, const PbrtPlace& place) {
     if (image.layer() == nullptr) refuse_pbrt(place, "a picture with colours", "none");
-    PbrtPixels pixels{image.width, image.height, {}, {}};
+    PbrtPixels pixels{image.width, image.height, {}, {}, {}};
     pixels.rgb.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     const auto clean = [](float x) { return std::isfinite(x) && x > 0 ? x : 0.0f; };
     for (int y = 0; y < image.height; ++y) {
@@ -164,10 +168,13 @@ PbrtNodeRef PbrtTextures::image_node(const PbrtTexture& texture, bool is_float) 
     const std::string file = p.string("filename", "");
     if (file.empty()) p.refuse("filename", "\"string filename\"", "none");
     node->pixels = pixels(file, p.string("encoding", "sRGB"), p.place());
-    if (is_float) {  // the mean of the channels
+    if (is_float) {  // the mean of the channels; alpha where the picture has it
         auto grey = std::make_shared<PbrtPixels>(*node->pixels);
         grey->srgb8.reset();
-        for (Spectrum& c : grey->rgb) c = Spectrum{(c.r + c.g + c.b) / 3};
+        for (std::size_t i = 0; i < grey->rgb.size(); ++i) {
+            const Spectrum c = grey->rgb[i];
+            grey->rgb[i] = Spectrum{grey->alpha.empty() ? (c.r + c.g + c.b) / 3 : grey->alpha[i]};
+        }
         node->pixels = std::move(grey);
     }
     return node;

@@ -28,6 +28,7 @@ struct PbrtMapping {
 struct PbrtPixels {
     int width = 0, height = 0;
     std::vector<Spectrum> rgb;
+    std::vector<float> alpha;                // empty where all of it is 1
     std::shared_ptr<const ByteImage> srgb8;  // the file itself where it is 8-bit sRGB
 };
 

@@ -67,8 +67,10 @@ TEST(PbrtTokenizer, EmptyFilesHaveNoTokens) {
 }
 
 TEST(PbrtTokenizer, RefusesWhatIsNoText) {
-    EXPECT_EQ(error_of("a \"b"), "a.pbrt:1:3: expected a string that ends with \", found the end of the file");
-    EXPECT_EQ(error_of("\"b\nc\""), "a.pbrt:1:1: expected a string that ends on its line, found a line break");
+    EXPECT_EQ(error_of("a \"b"),
+              "a.pbrt:1:3: expected a string that ends with \", found the end of the file");
+    EXPECT_EQ(error_of("\"b\nc\""),
+              "a.pbrt:1:1: expected a string that ends on its line, found a line break");
     EXPECT_NE(error_of("\"b\\q\"").find("a.pbrt:1:3: expected an escape"), std::string::npos);
     EXPECT_EQ(error_of(std::string{"ab\0c", 4}), "a.pbrt:1:3: expected text, found a control character");
     EXPECT_EQ(error_of(std::string{"\"b\0c\"", 5}), "a.pbrt:1:3: expected text, found a zero byte");
