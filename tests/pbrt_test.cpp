@@ -290,5 +290,15 @@ TEST(PbrtRender, FurnaceOfTransmittingAndCoatedSurfaces) {  // what is reflected
     EXPECT_NEAR(mean_of(coated), 1, 0.01);
 }
 
+TEST(PbrtRender, TheCornellBoxIsThatOfItsGltf) {
+    RenderSettings settings = one_sample();
+    settings.width = settings.height = 32;
+    settings.samples_per_pixel = 4;
+    const auto gltf = testing::block_estimates(testing::project_scene("cornell.glb"), settings, 16, 8);
+    const auto pbrt = testing::block_estimates(testing::project_scene("pbrt/cornell.pbrt"), settings, 16, 8);
+    EXPECT_GT(testing::agreement_p(gltf, pbrt), 1e-6);
+    EXPECT_LT(testing::agreement_p(gltf, pbrt, 1.1), 1e-6);  // a bias would show
+}
+
 }  // namespace
 }  // namespace relumine

@@ -6,7 +6,9 @@
 namespace relumine {
 namespace {
 
-float transmittance(const CoatedDiffuse& b, LocalDir w) { return 1 - fresnel_dielectric(cos_theta(w), b.eta); }
+float transmittance(const CoatedDiffuse& b, LocalDir w) {
+    return 1 - fresnel_dielectric(cos_theta(w), b.eta);
+}
 
 /// The probability of sampling the coat, by the lobes' rough shares of the reflected light.
 float coat_probability(const CoatedDiffuse& b, LocalDir w_out) {

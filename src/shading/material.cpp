@@ -62,8 +62,9 @@ Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking)
 }
 
 Bsdf coated_diffuse(const Factors& f, float ior, Masking masking) {
+    const Spectrum base = f.base_color / std::max(f.specular, 1e-3f);
     return CoatedDiffuse{
-        f.base_color, ior, {std::clamp(f.alpha, smooth_alpha, 1.0f), masking}, f.alpha < smooth_alpha, true};
+        base, ior, {std::clamp(f.alpha, smooth_alpha, 1.0f), masking}, f.alpha < smooth_alpha, true};
 }
 
 Bsdf diffuse_transmission(const SceneData& scene, const SurfacePoint& p, const Factors& f) {
