@@ -63,7 +63,7 @@ struct Material {
     bool solid = false;             // KHR_materials_volume with thickness > 0: refracts; else a thin sheet
     Spectrum attenuation_color{1};  // of light that went attenuation_distance through a solid
     float attenuation_distance = infinity;  // metres
-    bool coated_diffuse = false;    // the model CoatedDiffuse: base = base_color / specular
+    bool coated_diffuse = false;            // the model CoatedDiffuse: base = base_color / specular
     Spectrum diffuse_transmission;  // not black: the model DiffuseTransmission; base_color is reflected
     std::optional<TextureRef> diffuse_transmission_texture;  // RGB, sRGB
 };
