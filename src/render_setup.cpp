@@ -37,13 +37,14 @@ struct FrameSize {
 
 FrameSize frame_size(const RenderSettings& settings, const Camera& camera) {
     if (settings.width > 0) return {settings.width, settings.height};
+    if (camera.width > 0) return {camera.width, camera.height};
     const double aspect = camera.aspect > 0 ? camera.aspect : 4.0 / 3.0;
     return {default_width, std::clamp(static_cast<int>(std::lround(default_width / aspect)), 1, 65536)};
 }
 
-PixelRect crop_window(const RenderSettings& settings, FrameSize frame) {
+PixelRect crop_window(const RenderSettings& settings, const Camera& camera, FrameSize frame) {
     const PixelRect whole{0, 0, frame.width, frame.height};
-    if (!settings.crop) return whole;
+    if (!settings.crop) return settings.width == 0 && camera.crop ? *camera.crop : whole;
     const PixelRect& c = *settings.crop;
     if (!c.empty() && c.x0 >= 0 && c.y0 >= 0 && c.x1 <= frame.width && c.y1 <= frame.height) return c;
     throw SettingsError{expected_found("crop",
@@ -90,7 +91,7 @@ Tracer make_tracer(const SceneData& scene) {
 Framing find_framing(const SceneData& scene, const RenderSettings& settings) {
     const Camera& camera = find_camera(scene, settings.camera);
     const FrameSize frame = frame_size(settings, camera);
-    return {camera, frame.width, frame.height, crop_window(settings, frame)};
+    return {camera, frame.width, frame.height, crop_window(settings, camera, frame)};
 }
 
 RenderSetup::RenderSetup(const SceneData& scene, const RenderSettings& settings, const Framing& framing,

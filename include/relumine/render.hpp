@@ -45,9 +45,9 @@ struct RenderSettings {
                              // for, shared by all samples of a pixel
     std::string cache_scope = "image";  // "image", or "tile": caches of their own for tiles of 64 × 64 pixels
     std::string masking =
-        "correlated";               // Smith masking-shadowing of microfacets: "correlated" or "separable"
-    std::string camera;             // name or index; "": the first, or a framing one where there is none
-    int width = 0, height = 0;      // pixels; 0: 1024 wide by the camera's aspect
+        "correlated";           // Smith masking-shadowing of microfacets: "correlated" or "separable"
+    std::string camera;         // name or index; "": the first, or a framing one where there is none
+    int width = 0, height = 0;  // pixels; 0: what the scene asks for, else 1024 wide by the camera's aspect
     std::optional<PixelRect> crop;  // of the full frame; empty: all of it
     int threads = 0;                // 0: all; never changes the picture
     std::uint64_t seed = 0;

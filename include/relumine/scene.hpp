@@ -52,8 +52,8 @@ class Scene {
         data_;  // shared: scenes are values, their data is large and never changes
 };
 
-/// Loads `.gltf`/`.glb`; `.ply`/`.ply.gz`/`.obj` open as a model on a neutral ground under a built-in sky.
-/// Throws SceneError or ImageError (where, expected, found), SettingsError for bad options.
+/// Loads `.gltf`/`.glb` and `.pbrt`; `.ply`/`.ply.gz`/`.obj` open as a model on a neutral ground under a
+/// built-in sky. Throws SceneError or ImageError (where, expected, found), SettingsError for bad options.
 [[nodiscard]] Scene load_scene(const std::string& path, const SceneOptions& options = {});
 
 /// A column-major 4 × 4 affine matrix, as in glTF; maps object to world space (metres, Y up, right-handed).

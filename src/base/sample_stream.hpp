@@ -18,7 +18,8 @@ enum class Dim : std::uint32_t {
     direction,
     roulette,
     opacity,
-    blend
+    blend,
+    lens
 };
 
 enum class PointSet : std::uint8_t {

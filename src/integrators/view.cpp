@@ -20,17 +20,19 @@ CameraPacket trace_block(const View& view, const Tracer& tracer, int x0, int y0,
         streams[i] = samples[i].stream = pixel_stream(view.seed, samples[i].x, samples[i].y, sample,
                                                       view.samples_per_pixel, view.point_set);
     }
-    SamplePacket::Lanes<float> x, y;
+    SamplePacket::Lanes<float> x, y, lens_x{}, lens_y{};
     SamplePacket::Lanes<std::uint32_t> opacity{};
     const SamplePacket numbers(streams);
     numbers.next2(Dim::pixel, 0, x, y);
+    if (view.camera.has_lens()) numbers.next2(Dim::lens, 0, lens_x, lens_y);
     if (tracer.asks_for_opacity()) numbers.bits(Dim::opacity, 0, opacity);
     std::array<Ray, packet_size> rays;
     std::array<Hit, packet_size> hits;
     for (std::size_t i = 0; i < packet_size; ++i) {
         const Point2 in_pixel = view.filter.position({x[i], y[i]});
         rays[i] = view.camera.through(
-            {static_cast<float>(samples[i].x) + in_pixel.x, static_cast<float>(samples[i].y) + in_pixel.y});
+            {static_cast<float>(samples[i].x) + in_pixel.x, static_cast<float>(samples[i].y) + in_pixel.y},
+            {lens_x[i], lens_y[i]});
         rays[i].opacity_seed = opacity[i];
         samples[i].path.ray = rays[i];
     }

@@ -72,6 +72,7 @@ void MaterialChecker::factors() const {
     factor(material_.specular, "specular");
     factor(material_.transmission, "transmission");
     factor(material_.attenuation_color, "attenuation colour");
+    factor(material_.diffuse_transmission, "diffuse transmission");
     // KHR_materials_specular lets the colour exceed 1; the reflectance that it scales is clamped when shading
     at_least(std::min({material_.specular_color.r, material_.specular_color.g, material_.specular_color.b}),
              0, "specular colour");
@@ -86,6 +87,7 @@ void MaterialChecker::textures() const {
     texture(material_.specular_texture, "specular texture");
     texture(material_.specular_color_texture, "specular colour texture");
     texture(material_.transmission_texture, "transmission texture");
+    texture(material_.diffuse_transmission_texture, "diffuse transmission texture");
 }
 
 void MaterialChecker::texture(const std::optional<TextureRef>& ref, std::string_view what) const {

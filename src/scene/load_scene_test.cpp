@@ -44,7 +44,7 @@ TEST(LoadScene, NamesTheExtensionsThatItKnows) {
         (void)load_scene("scene.fbx");
         FAIL();
     } catch (const SceneError& error) {
-        EXPECT_NE(std::string{error.what()}.find(".gltf, .glb, .ply"), std::string::npos);
+        EXPECT_NE(std::string{error.what()}.find(".gltf, .glb, .pbrt, .pbrt.gz, .ply"), std::string::npos);
     }
 }
 

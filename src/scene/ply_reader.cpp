@@ -240,8 +240,13 @@ Mesh read_body(const PlyHeader& header, std::span<const std::uint8_t> bytes, con
 Mesh read_ply(const std::string& path, std::vector<std::string>& warnings) {
     std::vector<std::uint8_t> bytes = read_file(path);
     if (is_gzip(bytes)) bytes = unpack_gzip(bytes, path);
+    return parse_ply(bytes, path, warnings);
+}
+
+Mesh parse_ply(std::span<const std::uint8_t> bytes, const std::string& path,
+               std::vector<std::string>& warnings) {
     const PlyHeader header = parse_ply_header(bytes, path);
-    const auto body = std::span{bytes}.subspan(header.body);
+    const auto body = bytes.subspan(header.body);
     Mesh mesh;
     switch (header.format) {
         case PlyFormat::ascii:

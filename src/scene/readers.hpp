@@ -2,6 +2,8 @@
 // One reader per format: a file becomes an unfinished SceneData.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "scene/scene_data.hpp"
@@ -15,6 +17,13 @@ namespace relumine {
 /// with gzip. What was left out is added to `warnings`. Throws SceneError or FileError.
 [[nodiscard]] Mesh read_ply(const std::string& path, std::vector<std::string>& warnings);
 [[nodiscard]] Mesh read_obj(const std::string& path, std::vector<std::string>& warnings);
+
+/// The mesh in the bytes of an unpacked PLY file; `path` begins every message.
+[[nodiscard]] Mesh parse_ply(std::span<const std::uint8_t> bytes, const std::string& path,
+                             std::vector<std::string>& warnings);
+
+/// pbrt-v4's scene description, `.pbrt`, with all that it includes. Throws SceneError or ImageError.
+[[nodiscard]] SceneData read_pbrt(const std::string& path);
 
 /// Lat-long `.exr`, `.hdr`, `.pfm`. Negative or non-finite texels become 0 and are counted in a warning.
 /// Throws ImageError.

@@ -97,7 +97,8 @@ bool leaves_folder(const fs::path& relative) {
     return relative.empty() || relative.is_absolute() || *relative.begin() == "..";
 }
 
-/// The real path of the file, which lies inside the real folder.
+}  // namespace
+
 std::string contained_path(const std::string& name, const std::string& folder, const std::string& where) {
     const std::string expected = "a file inside the scene's folder";
     if (name.empty()) refuse(where, expected, "an empty name");
@@ -112,8 +113,6 @@ std::string contained_path(const std::string& name, const std::string& folder, c
         refuse(where, expected, quote(name) + ", a link that leads outside");
     return target.string();
 }
-
-}  // namespace
 
 std::vector<std::uint8_t> read_reference(const std::string& uri, const std::string& folder,
                                          const std::string& where) {

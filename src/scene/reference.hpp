@@ -14,6 +14,10 @@ namespace relumine {
 [[nodiscard]] std::vector<std::uint8_t> read_reference(const std::string& uri, const std::string& folder,
                                                        const std::string& where);
 
+/// The real path of the file `name`, which must lie inside `folder`. Throws as above.
+[[nodiscard]] std::string contained_path(const std::string& name, const std::string& folder,
+                                         const std::string& where);
+
 /// The folder that `path` lies in; "." where it names none.
 [[nodiscard]] std::string folder_of(const std::string& path);
 

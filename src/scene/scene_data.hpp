@@ -5,10 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/pixel_rect.hpp"
 #include "base/transform.hpp"
 #include "base/vec.hpp"
 #include "image/byte_image.hpp"
@@ -61,6 +63,9 @@ struct Material {
     bool solid = false;             // KHR_materials_volume with thickness > 0: refracts; else a thin sheet
     Spectrum attenuation_color{1};  // of light that went attenuation_distance through a solid
     float attenuation_distance = infinity;  // metres
+    bool coated_diffuse = false;            // the model CoatedDiffuse: base = base_color / specular
+    Spectrum diffuse_transmission;  // not black: the model DiffuseTransmission; base_color is reflected
+    std::optional<TextureRef> diffuse_transmission_texture;  // RGB, sRGB
 };
 
 struct Triangle {
@@ -86,15 +91,27 @@ struct Instance {
     bool identity = false;  // set by finish_scene: the mesh is already in world space
 };
 
+/// How a light's intensity depends on the direction: a picture of factors, read without interpolation.
+struct LightPattern {
+    Transform light_from_world;  // its linear part
+    bool equal_area = true;      // a square of all directions, else a perspective picture around +Z
+    double half_width = 1,
+           half_height = 1;  // of the perspective picture, at unit distance; +Y is its upper edge
+    int width = 0, height = 0;
+    std::vector<Spectrum> factor;  // row-major, top row first
+};
+
 struct PointLight {
     Vec3 position;
-    Spectrum intensity;  // W·sr⁻¹
+    Spectrum intensity;                                     // W·sr⁻¹
+    std::shared_ptr<const LightPattern> pattern = nullptr;  // multiplies the intensity; null: even
 };
 struct SpotLight {
     Vec3 position;
     Vec3 direction;      // unit, the axis along which light leaves
     Spectrum intensity;  // W·sr⁻¹ on the axis
     float cos_inner = 1, cos_outer = 0.70710678f;
+    bool smoothstep = false;  // between the angles: pbrt's smooth step instead of glTF's square
 };
 struct DirectionalLight {
     Vec3 direction;       // unit, the way the light travels
@@ -109,12 +126,21 @@ struct Environment {
     float rotation = 0;              // radians, counter-clockwise seen from +Y
 };
 
+/// Pictures of all directions, around the camera's Y axis.
+enum class Panorama : std::uint8_t { none, lat_long, equal_area };
+
 struct Camera {
     std::string name;
     Transform world_from_camera;  // looks along −Z, +Y up
     bool orthographic = false;
-    double vertical_extent = 0.7;  // field of view in radians, or full height in metres if orthographic
-    double aspect = 0;             // width / height; 0: as the picture's
+    double vertical_extent = 0.7;     // field of view in radians, or full height in metres if orthographic
+    double aspect = 0;                // width / height; 0: as the picture's
+    double stretch = 1;               // width over height of what a pixel sees
+    double shift_x = 0, shift_y = 0;  // of the picture's middle, to the right and upwards, in half heights
+    double lens_radius = 0, focus_distance = 0;  // thin lens: in units of the camera's space; 0: a pinhole
+    Panorama panorama = Panorama::none;
+    int width = 0, height = 0;      // pixels that the scene asks for; 0: nothing
+    std::optional<PixelRect> crop;  // of that picture
 };
 
 /// Everything. Readers fill it, `finish_scene` validates it; nothing changes it afterwards.

@@ -41,15 +41,17 @@ void add(Fingerprint& print, const Material& material) {
                  metallic_roughness_texture, normal_texture, normal_scale, emission, emission_texture,
                  alpha_mode, alpha_cutoff, double_sided, ior, specular, specular_texture, specular_color,
                  specular_color_texture, transmission, transmission_texture, solid, attenuation_color,
-                 attenuation_distance] = material;
+                 attenuation_distance, coated_diffuse, diffuse_transmission, diffuse_transmission_texture] =
+        material;
     (void)name;
-    for (const Spectrum& colour : {base_color, emission, specular_color, attenuation_color})
+    for (const Spectrum& colour :
+         {base_color, emission, specular_color, attenuation_color, diffuse_transmission})
         add(print, colour);
     add_each(print, base_alpha, metallic, roughness, normal_scale, alpha_mode, alpha_cutoff, double_sided,
-             ior, specular, transmission, solid, attenuation_distance);
+             ior, specular, transmission, solid, attenuation_distance, coated_diffuse);
     for (const auto* texture :
          {&base_color_texture, &metallic_roughness_texture, &normal_texture, &emission_texture,
-          &specular_texture, &specular_color_texture, &transmission_texture})
+          &specular_texture, &specular_color_texture, &transmission_texture, &diffuse_transmission_texture})
         add(print, *texture);
 }
 
@@ -78,17 +80,26 @@ void add(Fingerprint& print, const ByteImage& image) {
     print.add_all(rgba16);
 }
 
+void add(Fingerprint& print, const LightPattern& pattern) {
+    const auto& [light_from_world, equal_area, half_width, half_height, width, height, factor] = pattern;
+    add(print, light_from_world);
+    add_each(print, equal_area, half_width, half_height, width, height);
+    print.add_all(factor);
+}
+
 void add(Fingerprint& print, const PointLight& light) {
-    const auto& [position, intensity] = light;
+    const auto& [position, intensity, pattern] = light;
     add(print, position);
     add(print, intensity);
+    print.add(pattern != nullptr);
+    if (pattern) add(print, *pattern);
 }
 void add(Fingerprint& print, const SpotLight& light) {
-    const auto& [position, direction, intensity, cos_inner, cos_outer] = light;
+    const auto& [position, direction, intensity, cos_inner, cos_outer, smoothstep] = light;
     add(print, position);
     add(print, direction);
     add(print, intensity);
-    add_each(print, cos_inner, cos_outer);
+    add_each(print, cos_inner, cos_outer, smoothstep);
 }
 void add(Fingerprint& print, const DirectionalLight& light) {
     const auto& [direction, irradiance] = light;
@@ -103,10 +114,13 @@ void add(Fingerprint& print, const Environment& environment) {
 }
 
 void add(Fingerprint& print, const Camera& camera) {
-    const auto& [name, world_from_camera, orthographic, vertical_extent, aspect] = camera;
+    const auto& [name, world_from_camera, orthographic, vertical_extent, aspect, stretch, shift_x, shift_y,
+                 lens_radius, focus_distance, panorama, width, height, crop] = camera;
     print.add(std::string_view(name));
     add(print, world_from_camera);
-    add_each(print, orthographic, vertical_extent, aspect);
+    add_each(print, orthographic, vertical_extent, aspect, stretch, shift_x, shift_y, lens_radius,
+             focus_distance, panorama, width, height, crop.has_value());
+    if (crop) add_each(print, crop->x0, crop->y0, crop->x1, crop->y1);
 }
 
 /// Of all elements, in order.

@@ -67,14 +67,30 @@ struct MetallicRoughness {
     bool smooth = false;  // the specular lobe is a delta
 };
 
+/// A diffuse base under a dielectric coat that refracts light on its way in and out: what pbrt's
+/// "coateddiffuse" tends to where its coat is smooth.
+struct CoatedDiffuse {
+    Spectrum
+        base;  // reflected light over the light that the coat lets in, times what it lets out: f·π / (T·T)
+    float eta = 1.5f;  // index of refraction of the coat
+    Ggx ggx;
+    bool smooth = false;  // the coat's reflection is a delta
+    bool coated = true;   // false: the base's light alone
+};
+
+/// Diffuse reflection, and diffuse transmission to the other side.
+struct DiffuseTransmission {
+    Spectrum reflectance, transmittance;
+};
+
 /// What a BSDF says of one direction: eval and pdf, which share most of their work.
 struct BsdfValue {
     Spectrum value;  // f·|cos θ|, 1/sr
     float pdf = 0;   // 1/sr
 };
 
-using Bsdf =
-    std::variant<Lambert, Mirror, RoughConductor, SmoothDielectric, RoughDielectric, MetallicRoughness>;
+using Bsdf = std::variant<Lambert, Mirror, RoughConductor, SmoothDielectric, RoughDielectric,
+                          MetallicRoughness, CoatedDiffuse, DiffuseTransmission>;
 
 #define RELUMINE_DECLARE_BSDF(Model)                                                                  \
     [[nodiscard]] Spectrum eval(const Model&, LocalDir w_out, LocalDir w_in); /* f·|cos θ|, 1/sr */ \
@@ -89,6 +105,8 @@ RELUMINE_DECLARE_BSDF(RoughConductor)
 RELUMINE_DECLARE_BSDF(SmoothDielectric)
 RELUMINE_DECLARE_BSDF(RoughDielectric)
 RELUMINE_DECLARE_BSDF(MetallicRoughness)
+RELUMINE_DECLARE_BSDF(CoatedDiffuse)
+RELUMINE_DECLARE_BSDF(DiffuseTransmission)
 #undef RELUMINE_DECLARE_BSDF
 
 /// Both of a model's functions, in one where that saves work.
@@ -130,6 +148,9 @@ inline bool has_lobes(const Bsdf& bsdf) {
 
 /// The probability with which `sample` draws a delta lobe of a BSDF that may have others.
 [[nodiscard]] float delta_probability(const Bsdf& bsdf, LocalDir w_out);
+
+/// The same of a coat.
+[[nodiscard]] float coat_delta_probability(const CoatedDiffuse& bsdf, LocalDir w_out);
 
 /// What is left of a BSDF that is not all delta when its delta lobe is taken away.
 [[nodiscard]] Bsdf without_delta(const Bsdf& bsdf);

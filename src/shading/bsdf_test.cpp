@@ -43,6 +43,8 @@ const std::vector<NamedBsdf>& rough_bsdfs() {
                                       Spectrum{1}, ggx(0.25f)}},
         {"layered metal", MetallicRoughness{Spectrum{0.3f}, Spectrum{0}, Spectrum{0}, Spectrum{0.4f},
                                             Spectrum{0.5f}, ggx(0.2f)}},
+        {"coated diffuse", CoatedDiffuse{Spectrum{0.4f, 0.3f, 0.1f}, 1.5f, ggx(0.25f)}},
+        {"diffuse transmission", DiffuseTransmission{Spectrum{0.3f}, Spectrum{0.5f, 0.4f, 0.2f}}},
     };
     return all;
 }
@@ -136,12 +138,17 @@ TEST(Bsdf, ChiSquareCatchesWrongSamplers) {
     };
     EXPECT_LT(chi_square(uniform, density_of(Lambert{Spectrum{1}}, direction(0.6f, 0))), 1e-6);
     for (const auto& [name, bsdf] : rough_bsdfs()) {
-        // Neither diffuse reflection nor α = 1 (where bounded sampling is uniform) depends on the view.
-        if (std::string_view(name) == "lambert" || std::string_view(name) == "conductor 1") continue;
+        // Neither what is diffuse nor α = 1 (where bounded sampling is uniform) depends on the view.
+        const std::string_view n = name;
+        if (n == "lambert" || n == "conductor 1" || n == "diffuse transmission") continue;
         const LocalDir w_out = direction(0.6f, 0.7f),
                        tilted = direction(std::cos(std::acos(0.6f) + 0.1f), 0.7f);  // 6° off
         EXPECT_LT(chi_square(sampler_of(bsdf, tilted), density_of(bsdf, w_out)), 1e-6) << name;
     }
+    const DiffuseTransmission through{Spectrum{0.3f}, Spectrum{0.5f}},
+        swapped{Spectrum{0.5f}, Spectrum{0.3f}};
+    const LocalDir w_out = direction(0.6f, 0.7f);
+    EXPECT_LT(chi_square(sampler_of(swapped, w_out), density_of(through, w_out)), 1e-6);
 }
 
 TEST(Bsdf, WeightIsEvalOverPdf) {

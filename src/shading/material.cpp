@@ -86,10 +86,26 @@ Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking)
         lerp(coat_f90, Spectrum{1}, metallic), ggx,     smooth};
 }
 
+Bsdf coated_diffuse(const Factors& f, float ior, Masking masking) {
+    const Spectrum base = f.base_color / std::max(f.specular, 1e-3f);
+    return CoatedDiffuse{
+        base, ior, {std::clamp(f.alpha, smooth_alpha, 1.0f), masking}, f.alpha < smooth_alpha, true};
+}
+
+Bsdf diffuse_transmission(const SceneData& scene, const SurfacePoint& p, const Factors& f) {
+    const Material& m = *p.material;
+    Spectrum transmitted = m.diffuse_transmission;
+    if (m.diffuse_transmission_texture)
+        transmitted *= rgb(sample_texture(scene, *m.diffuse_transmission_texture, p.uv, Encoding::srgb));
+    return DiffuseTransmission{f.base_color, transmitted};
+}
+
 }  // namespace
 
 Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, float u) {
     const Factors f = factors_at(scene, p);
+    if (p.material->coated_diffuse) return coated_diffuse(f, p.material->ior, masking);
+    if (!is_black(p.material->diffuse_transmission)) return diffuse_transmission(scene, p, f);
     if (u < glass_share(f)) return glass(p, f, masking);
     return opaque_layers(f, opaque_metal(f), p.material->ior, masking);
 }
@@ -130,7 +146,8 @@ std::optional<MetallicRoughness> as_layers(const Bsdf& bsdf) {
 UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(scene.materials.data()) {
     for (const Material& m : scene.materials) {
         const bool varies = m.base_color_texture || m.metallic_roughness_texture || m.transmission_texture
-                            || m.specular_texture || m.specular_color_texture || m.transmission > 0;
+                            || m.specular_texture || m.specular_color_texture || m.transmission > 0
+                            || m.diffuse_transmission_texture;
         SurfacePoint anywhere;
         anywhere.material = &m;
         bsdfs_.push_back(varies ? std::nullopt : std::optional(make_bsdf(scene, anywhere, masking, 0)));

@@ -61,11 +61,17 @@ std::optional<BsdfSample> sample(const MetallicRoughness& b, LocalDir w_out, Bsd
 
 float delta_probability(const Bsdf& bsdf, LocalDir w_out) {
     if (is_delta(bsdf)) return 1;
+    if (const auto* coated = std::get_if<CoatedDiffuse>(&bsdf)) return coat_delta_probability(*coated, w_out);
     const auto* layers = std::get_if<MetallicRoughness>(&bsdf);
     return layers && layers->smooth ? specular_probability(*layers, w_out) : 0.0f;
 }
 
 Bsdf without_delta(const Bsdf& bsdf) {
+    if (const auto* coated = std::get_if<CoatedDiffuse>(&bsdf)) {
+        CoatedDiffuse base = *coated;
+        base.coated = base.coated && !base.smooth;
+        return base;
+    }
     const auto* layers = std::get_if<MetallicRoughness>(&bsdf);
     if (!layers || !layers->smooth) return bsdf;
     MetallicRoughness diffuse = *layers;
@@ -83,6 +89,11 @@ Spectrum albedo(const Bsdf& bsdf) {
         Spectrum operator()(const MetallicRoughness& b) const {
             return b.diffuse * (1 - std::min(1.0f, max_component(b.coat_f0))) + b.specular_f0;
         }
+        Spectrum operator()(const CoatedDiffuse& b) const {
+            const float reflected = b.coated ? fresnel_dielectric(1, b.eta) : 0.0f;
+            return b.base * sqr(1 - fresnel_dielectric(1, b.eta)) + Spectrum{reflected};
+        }
+        Spectrum operator()(const DiffuseTransmission& b) const { return b.reflectance + b.transmittance; }
     };
     return std::visit(Visitor{}, bsdf);
 }

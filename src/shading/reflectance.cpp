@@ -86,6 +86,17 @@ Place place_of(float x, int count) {
 
 LobeAlbedo mixed(LobeAlbedo a, LobeAlbedo b, float t) { return {lerp(a.f0, b.f0, t), lerp(a.f90, b.f90, t)}; }
 
+/// ∫ T cos θ / π dω over the hemisphere: what a smooth dielectric lets in of light from everywhere.
+float mean_transmittance(float eta) {
+    constexpr int steps = 16;
+    float sum = 0;
+    for (int i = 0; i < steps; ++i)
+        sum += 1 - fresnel_dielectric(std::sqrt((static_cast<float>(i) + 0.5f) / steps), eta);
+    return sum / steps;
+}
+
+constexpr float followed_alpha = 0.1f;
+
 struct Splitter {
     LocalDir w_out;
 
@@ -99,6 +110,22 @@ struct Splitter {
     }
     LobeSplit operator()(const SmoothDielectric& b) const { return {{}, {}, b, true, 0}; }
     LobeSplit operator()(const RoughDielectric& b) const { return {{}, {}, b, true, b.ggx.alpha}; }
+    LobeSplit operator()(const CoatedDiffuse& b) const {
+        const float reflected = b.coated ? fresnel_dielectric(cos_theta(w_out), b.eta) : 0;
+        const float through = 1 - fresnel_dielectric(cos_theta(w_out), b.eta);
+        LobeSplit split{b.base * (through * mean_transmittance(b.eta)), Spectrum{reflected}, {}, false, 0};
+        if (!b.coated) return split;
+        CoatedDiffuse coat = b;
+        coat.base = {};
+        split.lobes = coat;
+        split.alpha = b.smooth ? 0 : b.ggx.alpha;
+        return split;
+    }
+    LobeSplit operator()(const DiffuseTransmission& b) const {
+        // What comes through is followed as a lobe is.
+        return {b.reflectance, b.transmittance, DiffuseTransmission{{}, b.transmittance}, false,
+                followed_alpha};
+    }
     LobeSplit operator()(const MetallicRoughness& b) const {
         const float f0 = max_component(b.coat_f0), f90 = max_component(b.coat_f90);
         const float coat = f0 + (f90 - f0) * coat_albedo(cos_theta(w_out));
