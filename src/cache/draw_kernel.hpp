@@ -48,16 +48,16 @@ struct RecordTexture {
 /// Which surfels.
 struct DrawnSurfels {
     std::span<const TexelRect> texels;
-    std::span<const std::uint8_t> black;  // whether all texels are
+    std::size_t colored;  // so many come first; all texels of the others are black
 };
 
-/// Draws surfels one after the other where bits are open; whether any bit was. `masks[i]` belongs to
+/// Draws surfels where bits are open, the first on top; whether any bit was. `masks[i]` belongs to
 /// surfel i; the canvas's arrays must have room for surfel_padding more elements past what is drawn.
 bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
                   const Canvas& canvas);
 
-/// Takes what lies in the surfels' trails from the open bits and adds it to the unknown ones. A trail that is
-/// no larger than its mask, which has been drawn, is passed over.
-void close_trails(std::span<const BitRect> trails, std::span<const BitRect> masks, Mask& open, Mask& unknown);
+/// Takes what lies in the trails of a layer, whose surfels have been drawn, from the open bits and adds it to
+/// the unknown ones. `closed`: the trails of the layers before; those of this one are added.
+void close_trails(std::span<const BitRect> trails, Mask& closed, Mask& open, Mask& unknown);
 
 }  // namespace relumine

@@ -19,7 +19,7 @@ class RecordReprojector {
         const Surfels& s = record_.surfels;
         for (std::size_t layer = 0; layer < s.layers(); ++layer) {
             const bool at_infinity = layer + 1 == s.layers();
-            cover(s.layer_begin[layer], s.layer_begin[layer + 1]);
+            cover(s.layer_begin[layer], s.black_begin[layer], s.layer_begin[layer + 1]);
             if (!at_infinity) close_behind(s.layer_begin[layer], s.layer_begin[layer + 1]);
         }
         for (std::size_t y = 0; y < mask_side; ++y)
@@ -27,27 +27,27 @@ class RecordReprojector {
     }
 
   private:
-    void cover(std::size_t begin, std::size_t end) {
+    void cover(std::size_t begin, std::size_t black_begin, std::size_t end) {
         const std::size_t count = end - begin;
         const RecordTexture texture{record_.radiance,
                                     record_.direct.empty() ? record_.radiance : record_.direct,
                                     static_cast<std::size_t>(record_.side)};
-        const bool any = draw_surfels(std::span(out_.masks).subspan(begin, count),
-                                      {std::span(record_.surfels.texels).subspan(begin, count),
-                                       std::span(record_.surfels.black).subspan(begin, count)},
-                                      texture, {open_, out_.radiance, out_.direct});
+        const bool any =
+            draw_surfels(std::span(out_.masks).subspan(begin, count),
+                         {std::span(record_.surfels.texels).subspan(begin, count), black_begin - begin},
+                         texture, {open_, out_.radiance, out_.direct});
         out_.layers += any ? 1 : 0;
     }
 
     /// What the move has opened behind this layer: farther layers must not fill it.
     void close_behind(std::size_t begin, std::size_t end) {
-        close_trails(std::span(out_.trails).subspan(begin, end - begin),
-                     std::span(out_.masks).subspan(begin, end - begin), open_, out_.unknown);
+        close_trails(std::span(out_.trails).subspan(begin, end - begin), closed_, open_, out_.unknown);
     }
 
     const Record& record_;
     Reprojection& out_;
-    Mask open_;  // neither covered nor unknown
+    Mask open_;    // neither covered nor unknown
+    Mask closed_;  // the trails of the layers so far
 };
 
 }  // namespace
