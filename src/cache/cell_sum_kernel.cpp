@@ -19,10 +19,10 @@ using namespace cells;
 
 constexpr std::size_t side = mask_side / 2;
 
-void sum_all(std::span<const std::uint32_t> radiance, const CellWeights& weights, std::span<float> products,
-             Spectrum& out) {
+void sum_all(std::span<const std::uint32_t> radiance, const Mask& lit, const CellWeights& weights,
+             std::span<float> products, Spectrum& out) {
     const F f;
-    out = weighted_sum(radiance, products, [&](std::size_t cell) {
+    out = weighted_sum(radiance, lit, products, [&](std::size_t cell) {
         return Colors{hn::LoadU(f, &weights.r[cell]), hn::LoadU(f, &weights.g[cell]),
                       hn::LoadU(f, &weights.b[cell])};
     });
@@ -80,10 +80,10 @@ namespace relumine {
 HWY_EXPORT(sum_all);
 HWY_EXPORT(find_curved);
 
-Spectrum sum_cells(std::span<const std::uint32_t> radiance, const CellWeights& weights,
+Spectrum sum_cells(std::span<const std::uint32_t> radiance, const Mask& lit, const CellWeights& weights,
                    std::span<float> products) {
     Spectrum sum;
-    HWY_DYNAMIC_DISPATCH(sum_all)(radiance, weights, products, sum);
+    HWY_DYNAMIC_DISPATCH(sum_all)(radiance, lit, weights, products, sum);
     return sum;
 }
 

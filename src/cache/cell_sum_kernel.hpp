@@ -14,10 +14,10 @@ struct CellWeights {
     std::span<const float> r, g, b;
 };
 
-/// Σ over cells of weight × Σ over the cell's bits of radiance. `radiance`: mask_side², RGBE; `weights`:
+/// Σ over cells of weight × Σ over the cell's lit bits of radiance. `radiance`: mask_side², RGBE; `weights`:
 /// (mask_side/2)² each. Where `products` is not empty it receives the luminance of each cell's term.
-[[nodiscard]] Spectrum sum_cells(std::span<const std::uint32_t> radiance, const CellWeights& weights,
-                                 std::span<float> products);
+[[nodiscard]] Spectrum sum_cells(std::span<const std::uint32_t> radiance, const Mask& lit,
+                                 const CellWeights& weights, std::span<float> products);
 
 /// Appends the cells, but for those at the border, where |second differences| of `values` along both axes
 /// exceed `share` × (value + mean of all values), in ascending order. `values`: (mask_side/2)².

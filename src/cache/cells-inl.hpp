@@ -63,20 +63,26 @@ HWY_INLINE VF sum_pairs(VF low, VF high) {
 #endif
 }
 
-/// The next Lanes cells.
+/// The bits of Lanes columns; `column` is a multiple of the lanes.
+HWY_INLINE hn::Mask<U> lanes_of(const MaskRow& row, std::size_t column) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(&row) + column / 8;
+    if constexpr (hn::MaxLanes(U()) >= 8) return hn::LoadMaskBits(U(), bytes);
+    const std::uint64_t bits = *bytes >> column % 8;
+    return hn::LoadMaskBits(U(), reinterpret_cast<const std::uint8_t*>(&bits));
+}
+
+/// Lanes cells: the bits of two rows, black where they are not lit.
 struct Cells {
     VU above_low, above_high, below_low, below_high;
 
-    explicit HWY_INLINE Cells(const std::uint32_t* row)
-        : above_low(hn::LoadU(U(), row)),
-          above_high(hn::LoadU(U(), row + hn::Lanes(U()))),
-          below_low(hn::LoadU(U(), row + mask_side)),
-          below_high(hn::LoadU(U(), row + mask_side + hn::Lanes(U()))) {}
-
-    [[nodiscard]] HWY_INLINE bool black() const {
-        const VU all = hn::Or(hn::Or(above_low, above_high), hn::Or(below_low, below_high));
-        return hn::AllTrue(U(), hn::Eq(all, hn::Zero(U())));
+    HWY_INLINE Cells(std::span<const std::uint32_t> radiance, const Mask& lit, std::size_t y, std::size_t x) {
+        const auto load = [&](std::size_t row, std::size_t column) {
+            return hn::MaskedLoad(lanes_of(lit.rows[row], column), U(), &radiance[row * mask_side + column]);
+        };
+        above_low = load(y, x), above_high = load(y, x + hn::Lanes(U()));
+        below_low = load(y + 1, x), below_high = load(y + 1, x + hn::Lanes(U()));
     }
+
     [[nodiscard]] HWY_INLINE Colors sums() const {
         const Colors low = add(unpack(above_low), unpack(below_low)),
                      high = add(unpack(above_high), unpack(below_high));
@@ -84,24 +90,25 @@ struct Cells {
     }
 };
 
-/// Σ over cells of weight(cell) × Σ over the cell's bits of radiance; weights of black cells are not asked
-/// for. `weight` gives those of Lanes cells from `cell` on. Where `products` is not empty (a float per cell)
-/// it receives the luminance of each cell's term.
+/// Σ over cells of weight(cell) × Σ over the cell's lit bits of radiance; weights of black cells are not
+/// asked for. `weight` gives those of Lanes cells from `cell` on. Where `products` is not empty (a float per
+/// cell) it receives the luminance of each cell's term.
 template <typename Weight>
-HWY_INLINE Spectrum weighted_sum(std::span<const std::uint32_t> radiance, std::span<float> products,
-                                 const Weight& weight) {
+HWY_INLINE Spectrum weighted_sum(std::span<const std::uint32_t> radiance, const Mask& lit,
+                                 std::span<float> products, const Weight& weight) {
     const F f;
     constexpr std::size_t side = mask_side / 2;
     Colors sum{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
     for (std::size_t y = 0; y < side; ++y)
         for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
             const std::size_t cell = y * side + x;
-            const Cells cells(&radiance[y * 2 * mask_side + 2 * x]);
-            if (cells.black()) {  // much of it where gather rays bring back emission alone
+            // Much is black where gather rays bring back emission alone.
+            const int column = static_cast<int>(2 * x), columns = static_cast<int>(2 * hn::Lanes(f));
+            if ((lit.rows[2 * y] | lit.rows[2 * y + 1]).bits(column, columns) == 0) {
                 if (!products.empty()) hn::StoreU(hn::Zero(f), f, &products[cell]);
                 continue;
             }
-            const Colors term = multiply(cells.sums(), weight(cell));
+            const Colors term = multiply(Cells(radiance, lit, 2 * y, 2 * x).sums(), weight(cell));
             sum = add(sum, term);
             if (products.empty()) continue;
             const VF luminance =

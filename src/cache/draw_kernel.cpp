@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "cache/cells-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace relumine::HWY_NAMESPACE {
 namespace {
@@ -81,12 +83,7 @@ bool take(std::span<const BitRect> rects, Mask& open) {
 struct Block {
     std::uint32_t begin;
 
-    [[nodiscard]] HWY_INLINE hn::Mask<U> of(const MaskRow& row) const {
-        const auto* bytes = reinterpret_cast<const std::uint8_t*>(&row) + begin / 8;
-        if constexpr (hn::MaxLanes(U()) >= 8) return hn::LoadMaskBits(U(), bytes);
-        const std::uint64_t bits = *bytes >> begin % 8;
-        return hn::LoadMaskBits(U(), reinterpret_cast<const std::uint8_t*>(&bits));
-    }
+    [[nodiscard]] HWY_INLINE hn::Mask<U> of(const MaskRow& row) const { return cells::lanes_of(row, begin); }
     [[nodiscard]] HWY_INLINE VU columns() const { return hn::Add(hn::Iota(U(), 0), hn::Set(U(), begin)); }
 };
 
@@ -146,8 +143,13 @@ void paint_all(std::span<const BitRect> masks, std::span<const TexelRect> texels
 
 bool draw_all(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
               const Canvas& canvas) {
+    if (surfels.colored == 0) return take(masks, canvas.open);
     paint_all(masks.first(surfels.colored), surfels.texels, texture, canvas);
-    return take(masks, canvas.open);
+    const Mask before = canvas.open;
+    const bool any = take(masks.first(surfels.colored), canvas.open);
+    for (std::size_t y = 0; y < mask_side; ++y)
+        canvas.lit.rows[y] = canvas.lit.rows[y] | (before.rows[y] & ~canvas.open.rows[y]);
+    return take(masks.subspan(surfels.colored), canvas.open) || any;
 }
 
 /// Trails are many and long: only their union touches the other masks.

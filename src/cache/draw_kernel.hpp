@@ -34,7 +34,8 @@ class TexelSteps {
 /// What surfels are drawn into.
 struct Canvas {
     Mask& open;                         // bits that may be drawn; those drawn are taken away
-    std::span<std::uint32_t> radiance;  // mask_side², row-major in (y, x), 0 where nothing has been drawn
+    Mask& lit;                          // bits drawn that may not be black are added
+    std::span<std::uint32_t> radiance;  // mask_side², row-major in (y, x); black surfels leave it alone
     std::span<std::uint32_t> direct;    // the same, or empty
 };
 

@@ -151,7 +151,7 @@ TEST(ProjectKernel, AgreesWithTheMap) {
 }
 
 struct Drawing {
-    Mask open;
+    Mask open, lit;
     std::vector<std::uint32_t> radiance = std::vector<std::uint32_t>(mask_bits + surfel_padding);
     std::vector<std::uint32_t> direct = std::vector<std::uint32_t>(mask_bits + surfel_padding);
 };
@@ -172,6 +172,7 @@ void draw_one(const BitRect& rect, const TexelRect& texels, bool black, const Re
             bit.fill({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(x + 1),
                       static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(y + 1)});
             out.open = out.open & ~bit;
+            if (!black) out.lit = out.lit | bit;
         }
 }
 
@@ -213,10 +214,11 @@ TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
         for (const bool with_direct : {false, true}) {
             Drawing out;
             out.open.fill({3, 120, 5, 128});
-            const Canvas canvas{out.open, out.radiance,
+            const Canvas canvas{out.open, out.lit, out.radiance,
                                 with_direct ? std::span(out.direct) : std::span<std::uint32_t>()};
             EXPECT_TRUE(draw_surfels(masks, {texels, colored}, record, canvas));
             EXPECT_EQ(out.open, expected.open);
+            EXPECT_EQ(out.lit, expected.lit);
             EXPECT_EQ(out.radiance, expected.radiance);
             EXPECT_TRUE(!with_direct || out.direct == expected.direct);
             EXPECT_FALSE(draw_surfels(std::span(masks).first(0), {texels, 0}, record, canvas));
@@ -253,6 +255,9 @@ TEST(CellSumKernel, AgreesWithItsDefinitionOnEveryTarget) {
     constexpr std::size_t cells = mask_bits / 4, side = mask_side / 2;
     std::vector<std::uint32_t> radiance(mask_bits);
     std::vector<float> r(cells), g(cells), b(cells);
+    Mask lit = ~Mask{};
+    lit.rows[8] = lit.rows[9] = lit.rows[20] = {};
+    lit.rows[30] = bit_span(3, 70);
     for (std::size_t i = 0; i < radiance.size(); ++i)
         if (i % 7 != 0)
             radiance[i] = pack_rgbe({uniform(i, 1, 0, 5), uniform(i, 2, 0, 1), uniform(i, 3, 0, 1e-3f)});
@@ -262,19 +267,22 @@ TEST(CellSumKernel, AgreesWithItsDefinitionOnEveryTarget) {
     std::vector<float> products(cells);
     for (std::size_t i = 0; i < cells; ++i) {
         const std::size_t bit = i / side * 2 * mask_side + i % side * 2;
-        const Spectrum sum = unpack_rgbe(radiance[bit]) + unpack_rgbe(radiance[bit + 1])
-                             + unpack_rgbe(radiance[bit + mask_side])
-                             + unpack_rgbe(radiance[bit + mask_side + 1]);
+        const auto light = [&](std::size_t at) {
+            const bool seen = lit.test(static_cast<int>(at % mask_side), static_cast<int>(at / mask_side));
+            return seen ? unpack_rgbe(radiance[at]) : Spectrum{};
+        };
+        const Spectrum sum =
+            light(bit) + light(bit + 1) + light(bit + mask_side) + light(bit + mask_side + 1);
         expected += sum * Spectrum{r[i], g[i], b[i]};
         products[i] = luminance(sum * Spectrum{r[i], g[i], b[i]});
     }
     on_every_target([&] {
         std::vector<float> found(cells);
-        const Spectrum sum = sum_cells(radiance, {r, g, b}, found);
+        const Spectrum sum = sum_cells(radiance, lit, {r, g, b}, found);
         EXPECT_NEAR(sum.r, expected.r, 1e-4f * expected.r);
         EXPECT_NEAR(sum.g, expected.g, 1e-4f * expected.g);
         EXPECT_NEAR(sum.b, expected.b, 1e-4f * expected.b);
-        EXPECT_EQ(sum, sum_cells(radiance, {r, g, b}, {}));
+        EXPECT_EQ(sum, sum_cells(radiance, lit, {r, g, b}, {}));
         for (std::size_t i = 0; i < cells; ++i)
             ASSERT_NEAR(found[i], products[i], 1e-5f * products[i] + 1e-9f);
     });
@@ -307,6 +315,8 @@ TEST(CellSumKernel, FindsCurvedCellsOnEveryTarget) {
 TEST(CellSumKernel, SumsTheSameWithATableOfTheBsdfAsWithout) {
     constexpr std::size_t cells = mask_bits / 4;
     std::vector<std::uint32_t> radiance(mask_bits);
+    Mask lit;
+    lit.fill({5, 120, 7, 128});
     for (std::size_t i = 0; i < radiance.size(); ++i)
         if (i / 64 % 3 != 0) radiance[i] = pack_rgbe({uniform(i, 1, 0, 5), uniform(i, 2, 0, 1), 1});
     std::vector<float> x(cells), y(cells), z(cells), r(cells), g(cells), b(cells);
@@ -327,11 +337,11 @@ TEST(CellSumKernel, SumsTheSameWithATableOfTheBsdfAsWithout) {
     on_every_target([&] {
         evaluate(bsdf, {x, y, z}, {r, g, b});
         std::vector<float> products(cells), expected_products(cells);
-        const Spectrum expected = sum_cells(radiance, {r, g, b}, expected_products);
+        const Spectrum expected = sum_cells(radiance, lit, {r, g, b}, expected_products);
         EXPECT_GT(expected.g, 1);
-        EXPECT_EQ(reflect_cells(bsdf, {x, y, z}, radiance, products), expected);
+        EXPECT_EQ(reflect_cells(bsdf, {x, y, z}, radiance, lit, products), expected);
         EXPECT_EQ(products, expected_products);
-        EXPECT_EQ(reflect_cells(bsdf, {x, y, z}, radiance, {}), expected);
+        EXPECT_EQ(reflect_cells(bsdf, {x, y, z}, radiance, lit, {}), expected);
     });
 }
 

@@ -123,10 +123,11 @@ void evaluate_all(const ReceiverBsdf& bsdf, const Directions& w_in, const Spectr
 }
 
 void reflect_all_cells(const ReceiverBsdf& bsdf, const Directions& centers,
-                       std::span<const std::uint32_t> radiance, std::span<float> products, Spectrum& out) {
+                       std::span<const std::uint32_t> radiance, const Mask& lit, std::span<float> products,
+                       Spectrum& out) {
     const F f;
     const Prepared prepared(bsdf);
-    out = cells::weighted_sum(radiance, products, [&](std::size_t cell) {
+    out = cells::weighted_sum(radiance, lit, products, [&](std::size_t cell) {
         const Spectrums s = above_horizon(
             prepared,
             {hn::LoadU(f, &centers.x[cell]), hn::LoadU(f, &centers.y[cell]), hn::LoadU(f, &centers.z[cell])});
@@ -176,9 +177,9 @@ void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumAr
 }
 
 Spectrum reflect_cells(const ReceiverBsdf& bsdf, const Directions& centers,
-                       std::span<const std::uint32_t> radiance, std::span<float> products) {
+                       std::span<const std::uint32_t> radiance, const Mask& lit, std::span<float> products) {
     Spectrum sum;
-    HWY_DYNAMIC_DISPATCH(reflect_all_cells)(bsdf, centers, radiance, products, sum);
+    HWY_DYNAMIC_DISPATCH(reflect_all_cells)(bsdf, centers, radiance, lit, products, sum);
     return sum;
 }
 

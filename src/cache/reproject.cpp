@@ -35,7 +35,7 @@ class RecordReprojector {
         const bool any =
             draw_surfels(std::span(out_.masks).subspan(begin, count),
                          {std::span(record_.surfels.texels).subspan(begin, count), black_begin - begin},
-                         texture, {open_, out_.radiance, out_.direct});
+                         texture, {open_, out_.lit, out_.radiance, out_.direct});
         out_.layers += any ? 1 : 0;
     }
 
@@ -64,13 +64,20 @@ Frame receiver_frame(const Frame& record_frame, Vec3 normal) {
 }
 
 void Reprojection::clear(bool with_direct) {
-    covered = unknown = Mask{};
-    radiance.assign(mask_bits + surfel_padding, 0);
-    if (with_direct)
-        direct.assign(mask_bits + surfel_padding, 0);
-    else
-        direct.clear();
+    covered = unknown = lit = Mask{};
+    radiance.resize(mask_bits + surfel_padding);
+    direct.resize(with_direct ? mask_bits + surfel_padding : 0);
     records = layers = 0;
+}
+
+void Reprojection::blacken() {
+    for (int y = 0; y < mask_side; ++y)
+        for (int x = 0; x < mask_side; ++x) {
+            if (lit.test(x, y)) continue;
+            const auto at = static_cast<std::size_t>(y * mask_side + x);
+            radiance[at] = 0;
+            if (!direct.empty()) direct[at] = 0;
+        }
 }
 
 void reproject(const Record& record, const Receiver& receiver, Reprojection& out) {

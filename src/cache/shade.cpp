@@ -93,22 +93,24 @@ void refine(const ReceiverBsdf& bsdf, BsdfTable& table) {
 
 bool is_wide(const ReceiverBsdf& bsdf) { return !bsdf.specular || bsdf.ggx.alpha >= narrow_lobe; }
 
-Spectrum fine_cell_sum(const std::vector<std::uint32_t>& radiance, const BsdfTable& table, std::size_t fine) {
+Spectrum fine_cell_sum(const std::vector<std::uint32_t>& radiance, const Mask& lit, const BsdfTable& table,
+                       std::size_t fine) {
     const std::uint32_t cell = table.fine_cells[fine];
-    const std::size_t first_bit = cell / cell_side * 2 * mask_side + cell % cell_side * 2;
+    const std::size_t first_x = cell % cell_side * 2, first_y = cell / cell_side * 2;
     Spectrum sum;
     for (std::size_t bit = 0; bit < 4; ++bit) {
-        const std::uint32_t packed = radiance[first_bit + bit / 2 * mask_side + bit % 2];
-        if (packed != 0) sum += unpack_rgbe(packed) * table.fine_bits[4 * fine + bit];
+        const std::size_t x = first_x + bit % 2, y = first_y + bit / 2;
+        if (lit.test(static_cast<int>(x), static_cast<int>(y)))
+            sum += unpack_rgbe(radiance[y * mask_side + x]) * table.fine_bits[4 * fine + bit];
     }
     return sum;
 }
 
-Spectrum reflected(const std::vector<std::uint32_t>& radiance, const BsdfTable& table,
+Spectrum reflected(const std::vector<std::uint32_t>& radiance, const Mask& lit, const BsdfTable& table,
                    std::span<float> products) {
-    Spectrum sum = sum_cells(radiance, {table.r, table.g, table.b}, products);
+    Spectrum sum = sum_cells(radiance, lit, {table.r, table.g, table.b}, products);
     for (std::size_t fine = 0; fine < table.fine_cells.size(); ++fine) {
-        const Spectrum share = fine_cell_sum(radiance, table, fine);
+        const Spectrum share = fine_cell_sum(radiance, lit, table, fine);
         if (!products.empty()) products[table.fine_cells[fine]] = luminance(share);
         sum += share;
     }
@@ -131,10 +133,10 @@ void tabulate(const ReceiverBsdf& bsdf, BsdfTable& table) {
 }
 
 ReflectedRadiance shade(const Reprojection& incident, const BsdfTable& table, std::span<float> products) {
-    const Spectrum total = reflected(incident.radiance, table, products) * bit_solid_angle;
+    const Spectrum total = reflected(incident.radiance, incident.lit, table, products) * bit_solid_angle;
     for (float& product : products) product *= bit_solid_angle;
     if (incident.direct.empty()) return {total, total};
-    return {total, reflected(incident.direct, table, {}) * bit_solid_angle};
+    return {total, reflected(incident.direct, incident.lit, table, {}) * bit_solid_angle};
 }
 
 ReflectedRadiance shade(const Reprojection& incident, const ReceiverBsdf& bsdf, BsdfTable& scratch,
@@ -143,8 +145,9 @@ ReflectedRadiance shade(const Reprojection& incident, const ReceiverBsdf& bsdf, 
         tabulate(bsdf, scratch);
         return shade(incident, scratch, products);
     }
-    const Spectrum sum = reflect_cells(bsdf, cell_centers().span(0, cell_count), incident.radiance, products)
-                         * bit_solid_angle;
+    const Spectrum sum =
+        reflect_cells(bsdf, cell_centers().span(0, cell_count), incident.radiance, incident.lit, products)
+        * bit_solid_angle;
     for (float& product : products) product *= bit_solid_angle;
     return {sum, sum};
 }
