@@ -85,14 +85,15 @@ Box bounds(const std::array<Corner, 4>& p) {
 ScalarProjection project_one(const Surfels& s, std::size_t i, const Projection& projection) {
     std::array<Corner, 4> now;
     Vec3 middle;
-    const Vec3 shift = projection.frame.to_local({projection.shift / s.scale}).v;
+    const Vec3 shift = projection.shift / s.scale;
     for (std::size_t c = 0; c < 4; ++c) {
         const auto plane = [&](std::size_t axis) {
             half h;
             h.setBits(s.corners[(3 * c + axis) * s.stride + i]);
             return static_cast<float>(h);
         };
-        const Vec3 q = projection.frame.to_local({{plane(0), plane(1), plane(2)}}).v;
+        const Vec3 p{plane(0), plane(1), plane(2)};
+        const Vec3 q = projection.rotated ? projection.turn.to_local({p}).v : p;
         now[c] = project_corner(q + shift);
         middle = middle + q;
     }

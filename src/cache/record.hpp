@@ -31,7 +31,7 @@ struct Surfels {
     std::size_t count = 0;   // surfels
     std::size_t stride = 0;  // of the planes of `corners`, half floats
     std::vector<std::uint16_t>
-        corners;  // corner_planes × stride (+ padding): world-space offsets from the record
+        corners;  // corner_planes × stride (+ padding): offsets from the record, in its frame
     std::vector<TexelRect> texels;  // count (+ padding): which part of the texture the surfel carries
     std::vector<std::uint32_t>
         layer_begin;  // layers + 1 entries; layer k is [layer_begin[k], layer_begin[k + 1])

@@ -87,12 +87,17 @@ void reproject(const Record& record, const Receiver& receiver, Reprojection& out
         out.trails.resize(s.count + surfel_padding);
     }
     const bool rotated = !(receiver.frame.s == record.frame.s && receiver.frame.n == record.frame.n);
-    const Projection moved{receiver.frame, record.position - receiver.position, rotated, record.side};
-    const Projection turned{receiver.frame, {}, false, record.side};
+    const Frame turn{record.frame.to_local({receiver.frame.s}).v, record.frame.to_local({receiver.frame.t}).v,
+                     record.frame.to_local({receiver.frame.n}).v};
+    const Vec3 shift = receiver.frame.to_local({record.position - receiver.position}).v;
     const std::size_t infinity_begin = s.infinity_begin();
-    project_surfels(s, 0, infinity_begin, moved, out.masks, out.trails);
-    project_surfels(s, infinity_begin, s.count, turned, std::span(out.masks).subspan(infinity_begin),
-                    std::span(out.trails).subspan(infinity_begin));
+    project_surfels(s, 0, infinity_begin, {turn, shift, rotated, record.side}, out.masks, out.trails);
+    const auto masks = std::span(out.masks).subspan(infinity_begin),
+               trails = std::span(out.trails).subspan(infinity_begin);
+    if (rotated)
+        project_surfels(s, infinity_begin, s.count, {turn, {}, true, record.side}, masks, trails);
+    else
+        place_surfels(s, infinity_begin, s.count, record.side, masks);
     out.unknown = Mask{};
     RecordReprojector(record, out).run();
     ++out.records;

@@ -129,10 +129,11 @@ class Merger {
         const bool at_infinity = i >= out.infinity_begin();
         for (int corner = 0; corner < 4; ++corner) {
             const int right = corner & 1, down = corner >> 1;
-            const WorldDir direction = corner_direction(r.u + right * r.width, r.v + down * r.height);
+            const LocalDir direction = corner_direction(r.u + right * r.width, r.v + down * r.height);
             const TexelSample& seed = texels_[at(r.u, r.v)];
             const TexelSample& beside = texels_[at(r.u + right * (r.width - 1), r.v + down * (r.height - 1))];
-            const float reach = at_infinity ? 1 : corner_distance(seed, beside, direction) / out.scale;
+            const float reach =
+                at_infinity ? 1 : corner_distance(seed, beside, point_.frame.to_world(direction)) / out.scale;
             const Vec3 offset = direction.v * reach;
             for (int axis = 0; axis < 3; ++axis)
                 out.corners[static_cast<std::size_t>(3 * corner + axis) * out.stride + i] =
@@ -140,10 +141,9 @@ class Merger {
         }
     }
 
-    [[nodiscard]] WorldDir corner_direction(int u, int v) const {
+    [[nodiscard]] LocalDir corner_direction(int u, int v) const {
         const auto n = static_cast<float>(side_);
-        return point_.frame.to_world(
-            square_to_hemisphere({static_cast<float>(u) / n, static_cast<float>(v) / n}));
+        return square_to_hemisphere({static_cast<float>(u) / n, static_cast<float>(v) / n});
     }
 
     /// Where the ray through a corner meets the plane of the surfel.
