@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cache/draw_kernel.cpp"
@@ -141,6 +141,74 @@ void paint_all(std::span<const BitRect> masks, std::span<const TexelRect> texels
     }
 }
 
+/// The texels of a square of eight columns that were missed, as bits from the surfel's first column on.
+struct MissedTexels {
+    const std::uint8_t* row;  // of the surfel's first row
+    std::size_t pitch;        // bytes from one row to the next
+    std::uint32_t shift;
+
+    HWY_INLINE MissedTexels(const TexelRect& part, std::span<const std::uint8_t> missed, std::size_t side)
+        : row(&missed[(part.v * side + part.u) / 8]), pitch(side / 8), shift(part.u % 8) {}
+    [[nodiscard]] HWY_INLINE VU operator()(std::size_t texel) const {
+        return hn::Set(U(), static_cast<std::uint32_t>(row[texel * pitch] >> shift));
+    }
+};
+
+HWY_INLINE void add_lanes(hn::Mask<U> lanes, std::uint32_t column, MaskRow& row) {
+    using Bits = std::conditional_t<(hn::MaxLanes(U()) > 8), std::uint16_t, std::uint8_t>;
+    Bits bits;  // no wider than what is stored, or the load would have to wait for it
+    hn::StoreMaskBits(U(), lanes, reinterpret_cast<std::uint8_t*>(&bits));
+    (column < 64 ? row.low : row.high) |= std::uint64_t{bits} << column % 64;
+}
+
+/// As paint, but for texels that were hit. `drawn`: bits are added to it.
+template <bool with_direct>
+HWY_NOINLINE void paint_missed(const BitRect rect, const TexelRect part, const RecordTexture& texture,
+                               const Canvas& canvas, Mask& drawn) {
+    const auto lanes = static_cast<std::uint32_t>(hn::Lanes(U()));
+    const TexelSteps across(part.width, static_cast<std::uint32_t>(rect.width())),
+        down(part.height, static_cast<std::uint32_t>(rect.height()));
+    const std::size_t side = texture.side, first = part.v * side + part.u;
+    const std::uint32_t *const texels = &texture.radiance[first], *const direct_texels =
+                                                                      with_direct ? &texture.direct[first]
+                                                                                  : nullptr;
+    std::uint32_t *const radiance = canvas.radiance.data(), *const direct = canvas.direct.data();
+    const MissedTexels missed(part, texture.missed, side);
+    const std::size_t height = static_cast<std::size_t>(rect.height());
+    for (Block block{rect.x0 / lanes * lanes}; block.begin < rect.x1; block.begin += lanes) {
+        const Stretch stretch(across, rect, block);
+        const VU bit_of_texel = hn::Shl(hn::Set(U(), 1), stretch.texel);
+        const MaskRow* row = &canvas.open.rows[rect.y0];
+        MaskRow* drawn_row = &drawn.rows[rect.y0];
+        std::size_t at = rect.y0 * std::size_t{mask_side} + block.begin;
+        std::size_t position = down.step() / 2;  // of TexelSteps
+        for (std::size_t y = 0; y < height; ++y, position += down.step(), at += mask_side) {
+            const std::size_t texel = position >> 16;
+            const auto fresh =
+                hn::And(hn::And(stretch.inside, block.of(row[y])), hn::TestBit(missed(texel), bit_of_texel));
+            hn::BlendedStore(stretch(texels + texel * side), fresh, U(), radiance + at);
+            if constexpr (with_direct)
+                hn::BlendedStore(stretch(direct_texels + texel * side), fresh, U(), direct + at);
+            add_lanes(fresh, block.begin, drawn_row[y]);
+        }
+    }
+}
+
+bool draw_all_missed(std::span<const BitRect> masks, std::span<const TexelRect> texels,
+                     const RecordTexture& texture, const Canvas& canvas) {
+    Mask drawn;
+    const auto paint_one = canvas.direct.empty() ? paint_missed<false> : paint_missed<true>;
+    for (std::size_t i = masks.size(); i-- > 0;)
+        if (!masks[i].empty()) paint_one(masks[i], texels[i], texture, canvas, drawn);
+    MaskRow any;
+    for (std::size_t y = 0; y < mask_side; ++y) {
+        any = any | drawn.rows[y];
+        canvas.lit.rows[y] = canvas.lit.rows[y] | drawn.rows[y];
+        canvas.open.rows[y] = canvas.open.rows[y] & ~drawn.rows[y];
+    }
+    return any.any();
+}
+
 bool draw_all(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
               const Canvas& canvas) {
     if (surfels.colored == 0) return take(masks, canvas.open);
@@ -176,11 +244,17 @@ HWY_AFTER_NAMESPACE();
 namespace relumine {
 
 HWY_EXPORT(draw_all);
+HWY_EXPORT(draw_all_missed);
 HWY_EXPORT(close_all);
 
 bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
                   const Canvas& canvas) {
     return HWY_DYNAMIC_DISPATCH(draw_all)(masks, surfels, texture, canvas);
+}
+
+bool draw_missed(std::span<const BitRect> masks, std::span<const TexelRect> texels,
+                 const RecordTexture& texture, const Canvas& canvas) {
+    return HWY_DYNAMIC_DISPATCH(draw_all_missed)(masks, texels, texture, canvas);
 }
 
 void close_trails(std::span<const BitRect> trails, Mask& closed, Mask& open, Mask& unknown) {

@@ -44,6 +44,7 @@ struct RecordTexture {
     std::span<const std::uint32_t> radiance;  // side² (+ surfel_padding), row-major in (v, u)
     std::span<const std::uint32_t> direct;    // the same; used only where the canvas keeps it
     std::size_t side;
+    std::span<const std::uint8_t> missed;  // side²/8, bit u % 8 of byte (v · side + u)/8: at infinity
 };
 
 /// Which surfels.
@@ -56,6 +57,11 @@ struct DrawnSurfels {
 /// surfel i; the canvas's arrays must have room for surfel_padding more elements past what is drawn.
 bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
                   const Canvas& canvas);
+
+/// The same for surfels at infinity, whose texels are drawn only where they were missed. A surfel lies within
+/// eight columns of texels from a multiple of eight on.
+bool draw_missed(std::span<const BitRect> masks, std::span<const TexelRect> texels,
+                 const RecordTexture& texture, const Canvas& canvas);
 
 /// Takes what lies in the trails of a layer, whose surfels have been drawn, from the open bits and adds it to
 /// the unknown ones. `closed`: the trails of the layers before; those of this one are added.

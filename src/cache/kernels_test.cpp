@@ -177,6 +177,23 @@ void draw_one(const BitRect& rect, const TexelRect& texels, bool black, const Re
         }
 }
 
+/// Bit by bit, the texels that were missed.
+void draw_missed_one(const BitRect& rect, const TexelRect& texels, const RecordTexture& texture,
+                     Drawing& out) {
+    const TexelSteps columns(texels.width, static_cast<std::uint32_t>(rect.width())),
+        rows(texels.height, static_cast<std::uint32_t>(rect.height()));
+    for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x) {
+            const std::uint32_t v = texels.v + rows(static_cast<std::uint32_t>(y - rect.y0)),
+                                u = texels.u + columns(static_cast<std::uint32_t>(x - rect.x0));
+            const std::size_t texel = v * texture.side + u;
+            const auto byte = [](int i) { return static_cast<std::uint8_t>(i); };
+            if ((texture.missed[texel / 8] >> texel % 8 & 1) != 0)
+                draw_one({byte(x), byte(x + 1), byte(y), byte(y + 1)},
+                         {byte(static_cast<int>(u)), byte(static_cast<int>(v)), 1, 1}, false, texture, out);
+        }
+}
+
 std::uint8_t random_byte(std::uint64_t i, std::uint64_t what, float low, float high) {
     return static_cast<std::uint8_t>(uniform(i, what, low, high));
 }
@@ -195,7 +212,7 @@ TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
         texture[i] = static_cast<std::uint32_t>(hash(i, 1)) | 1;
         direct[i] = static_cast<std::uint32_t>(hash(i, 2)) | 1;
     }
-    const RecordTexture record{texture, direct, side};
+    const RecordTexture record{texture, direct, side, {}};
     std::vector<BitRect> masks;
     std::vector<TexelRect> texels;
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -225,6 +242,44 @@ TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
             EXPECT_FALSE(draw_surfels(std::span(masks).first(0), {texels, 0}, record, canvas));
             EXPECT_FALSE(
                 draw_surfels(masks, {texels, colored}, record, canvas));  // nothing is open there now
+        }
+    });
+}
+
+TEST(DrawKernel, DrawsOnlyWhatWasMissedOnEveryTarget) {
+    constexpr std::size_t side = 64, count = 60;
+    std::vector<std::uint32_t> texture(side * side + surfel_padding), direct = texture;
+    std::vector<std::uint8_t> missed(side * side / 8);
+    for (std::size_t i = 0; i < side * side; ++i) {
+        texture[i] = static_cast<std::uint32_t>(hash(i, 1));
+        direct[i] = static_cast<std::uint32_t>(hash(i, 2));
+    }
+    for (std::size_t i = 0; i < missed.size(); ++i) missed[i] = static_cast<std::uint8_t>(hash(i, 3));
+    std::vector<BitRect> masks;
+    std::vector<TexelRect> texels;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        masks.push_back(random_rect(i, 30, 30));
+        const std::uint8_t u = random_byte(i, 5, 0, 64), v = random_byte(i, 6, 0, 56);
+        texels.push_back({u, v, static_cast<std::uint8_t>(uniform(i, 7, 1, 9.0f - static_cast<float>(u % 8))),
+                          random_byte(i, 8, 1, 9)});
+    }
+    Drawing expected;
+    expected.open.fill({3, 120, 5, 128});
+    const int open_before = expected.open.count();
+    for (std::size_t i = 0; i < count; ++i)
+        draw_missed_one(masks[i], texels[i], {texture, direct, side, missed}, expected);
+    ASSERT_GT(open_before - expected.open.count(), mask_bits / 8);
+    on_every_target([&] {
+        for (const bool with_direct : {false, true}) {
+            Drawing out;
+            out.open.fill({3, 120, 5, 128});
+            const Canvas canvas{out.open, out.lit, out.radiance,
+                                with_direct ? std::span(out.direct) : std::span<std::uint32_t>()};
+            EXPECT_TRUE(draw_missed(masks, texels, {texture, direct, side, missed}, canvas));
+            EXPECT_EQ(out.open, expected.open);
+            EXPECT_EQ(out.lit, expected.lit);
+            EXPECT_EQ(out.radiance, expected.radiance);
+            EXPECT_TRUE(!with_direct || out.direct == expected.direct);
         }
     });
 }

@@ -32,7 +32,8 @@ struct Surfels {
     std::size_t stride = 0;  // of the planes of `corners`, half floats
     std::vector<std::uint16_t>
         corners;  // corner_planes × stride (+ padding): offsets from the record, in its frame
-    std::vector<TexelRect> texels;  // count (+ padding): which part of the texture the surfel carries
+    std::vector<std::uint8_t> missed;  // side²/8: a bit for each texel at infinity, row-major in (v, u)
+    std::vector<TexelRect> texels;     // count (+ padding): which part of the texture the surfel carries
     std::vector<std::uint32_t>
         layer_begin;  // layers + 1 entries; layer k is [layer_begin[k], layer_begin[k + 1])
     std::vector<std::uint32_t> black_begin;  // of each layer
@@ -56,7 +57,7 @@ struct Record {
     /// Memory that the record occupies.
     [[nodiscard]] std::size_t bytes() const {
         return sizeof(Record) + 4 * (radiance.capacity() + direct.capacity()) + 2 * surfels.corners.capacity()
-               + sizeof(TexelRect) * surfels.texels.capacity()
+               + sizeof(TexelRect) * surfels.texels.capacity() + surfels.missed.capacity()
                + 4 * (surfels.layer_begin.capacity() + surfels.black_begin.capacity());
     }
 };

@@ -19,7 +19,7 @@ class RecordReprojector {
         const Surfels& s = record_.surfels;
         for (std::size_t layer = 0; layer < s.layers(); ++layer) {
             const bool at_infinity = layer + 1 == s.layers();
-            cover(s.layer_begin[layer], s.black_begin[layer], s.layer_begin[layer + 1]);
+            cover(s.layer_begin[layer], s.black_begin[layer], s.layer_begin[layer + 1], at_infinity);
             if (!at_infinity) close_behind(s.layer_begin[layer], s.layer_begin[layer + 1]);
         }
         for (std::size_t y = 0; y < mask_side; ++y)
@@ -27,15 +27,16 @@ class RecordReprojector {
     }
 
   private:
-    void cover(std::size_t begin, std::size_t black_begin, std::size_t end) {
+    void cover(std::size_t begin, std::size_t black_begin, std::size_t end, bool at_infinity) {
         const std::size_t count = end - begin;
         const RecordTexture texture{record_.radiance,
                                     record_.direct.empty() ? record_.radiance : record_.direct,
-                                    static_cast<std::size_t>(record_.side)};
-        const bool any =
-            draw_surfels(std::span(out_.masks).subspan(begin, count),
-                         {std::span(record_.surfels.texels).subspan(begin, count), black_begin - begin},
-                         texture, {open_, out_.lit, out_.radiance, out_.direct});
+                                    static_cast<std::size_t>(record_.side), record_.surfels.missed};
+        const Canvas canvas{open_, out_.lit, out_.radiance, out_.direct};
+        const auto masks = std::span(out_.masks).subspan(begin, count);
+        const auto texels = std::span(record_.surfels.texels).subspan(begin, count);
+        const bool any = at_infinity ? draw_missed(masks, texels, texture, canvas)
+                                     : draw_surfels(masks, {texels, black_begin - begin}, texture, canvas);
         out_.layers += any ? 1 : 0;
     }
 

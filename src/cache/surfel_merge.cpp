@@ -46,8 +46,7 @@ class Merger {
   private:
     [[nodiscard]] std::size_t at(int u, int v) const { return static_cast<std::size_t>(v * side_ + u); }
 
-    /// What was missed is drawn last and does not move: its surfels may carry texels of what was hit as well,
-    /// because that has been drawn before or has left its trail there. So they are squares, not fragments.
+    /// Few squares instead of many fragments: `missed` says which texels of theirs are drawn.
     [[nodiscard]] std::vector<TexelRect> tiles_at_infinity() const {
         std::vector<TexelRect> tiles;
         for (int v = 0; v < side_; v += limits_.side)
@@ -113,6 +112,10 @@ class Merger {
         out.texels.resize(out.count + surfel_padding);
         out.corners.resize(corner_planes * out.stride + surfel_padding);
         for (std::size_t i = 0; i < out.count; ++i) put_corners(out, i);
+        out.missed.resize(texels_.size() / 8);
+        for (std::size_t i = 0; i < texels_.size(); ++i)
+            if (layers_.layer_of_texel[i] == layers_.count)
+                out.missed[i / 8] = static_cast<std::uint8_t>(out.missed[i / 8] | 1u << i % 8);
         return out;
     }
 
