@@ -103,8 +103,11 @@ BENCHMARK(make_record_of_4096_rays);
 void project_all_surfels(benchmark::State& state) {
     const Surfels& s = stage().record.surfels;
     std::vector<BitRect> masks(s.count + surfel_padding), trails(s.count + surfel_padding);
-    const Projection projection{stage().receiver.frame, stage().record.position - stage().receiver.position,
-                                true, 64};
+    const Frame &from = stage().record.frame, &to = stage().receiver.frame;
+    const Projection projection{{from.to_local({to.s}).v, from.to_local({to.t}).v, from.to_local({to.n}).v},
+                                to.to_local({stage().record.position - stage().receiver.position}).v,
+                                true,
+                                64};
     for (auto _ : state) {
         project_surfels(s, 0, s.count, projection, masks, trails);
         benchmark::DoNotOptimize(masks.data());

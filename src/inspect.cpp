@@ -125,6 +125,7 @@ class Inspector {
         }
         p_.covered = p_.filled.covered;
         p_.unknown = p_.filled.unknown;
+        p_.filled.blacken();
         p_.reprojected = p_.filled.radiance;
     }
 
@@ -135,7 +136,7 @@ class Inspector {
 
     void trace_truth() {
         p_.truth.clear(source_.reflects());
-        p_.truth.covered = ~Mask{};
+        p_.truth.covered = p_.truth.lit = ~Mask{};
         const std::vector<TexelSample> texels = trace_hemisphere(
             source_, gather_point(), mask_side, hash(p_.pixel.cache.key, truth_purpose), rays_);
         for (std::size_t i = 0; i < texels.size(); ++i) {

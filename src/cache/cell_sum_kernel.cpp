@@ -1,106 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel that decodes, sums and weighs radiance.
+// The kernels that decode, sum and weigh radiance, and find where a table of weights is too coarse.
 #include "cache/cell_sum_kernel.hpp"
+
+#include <bit>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cache/cell_sum_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "base/rgbe.hpp"
+#include "cache/cells-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using I = hn::Rebind<std::int32_t, F>;
-using U = hn::Rebind<std::uint32_t, F>;
-using VF = hn::Vec<F>;
-using VU = hn::Vec<U>;
+using namespace cells;
 
-struct Spectrums {
-    VF r, g, b;
-};
+constexpr std::size_t side = mask_side / 2;
 
-HWY_INLINE Spectrums unpack(VU packed) {
-    const U u;
+void sum_all(std::span<const std::uint32_t> radiance, const Mask& lit, const CellWeights& weights,
+             std::span<float> products, Spectrum& out) {
     const F f;
-    const VU exponent = hn::ShiftRight<24>(packed);
-    const auto seen =
-        hn::RebindMask(u, hn::Gt(hn::BitCast(I(), exponent), hn::Set(I(), least_rgbe_exponent - 1)));
-    const VU bits = hn::ShiftLeft<23>(hn::Sub(exponent, hn::Set(u, 9)));
-    const VF unit = hn::BitCast(f, hn::IfThenElseZero(seen, bits));
-    const VU byte = hn::Set(u, 255);
-    const auto channel = [&](VU v) {
-        return hn::Mul(hn::ConvertTo(f, hn::BitCast(I(), hn::And(v, byte))), unit);
+    out = weighted_sum(radiance, lit, products, [&](std::size_t cell) {
+        return Colors{hn::LoadU(f, &weights.r[cell]), hn::LoadU(f, &weights.g[cell]),
+                      hn::LoadU(f, &weights.b[cell])};
+    });
+}
+
+/// Column by column, so that the sums do not wait for each other.
+float mean(std::span<const float> values) {
+    const F f;
+    VF sum = hn::Zero(f);
+    for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
+        VF column = hn::Zero(f);
+        for (std::size_t y = 0; y < side; ++y) column = hn::Add(column, hn::LoadU(f, &values[y * side + x]));
+        sum = hn::Add(sum, column);
+    }
+    return hn::GetLane(hn::SumOfLanes(f, sum)) / static_cast<float>(values.size());
+}
+
+/// |Second differences| along both axes.
+HWY_INLINE VF curvature(const float* at, VF value) {
+    const F f;
+    const VF twice = hn::Add(value, value);
+    const auto bend = [&](std::ptrdiff_t step) {
+        return hn::Abs(hn::Add(hn::Sub(hn::LoadU(f, at - step), twice), hn::LoadU(f, at + step)));
     };
-    return {channel(packed), channel(hn::ShiftRight<8>(packed)), channel(hn::ShiftRight<16>(packed))};
+    return hn::Add(bend(1), bend(side));
 }
 
-HWY_INLINE Spectrums add(const Spectrums& a, const Spectrums& b) {
-    return {hn::Add(a.r, b.r), hn::Add(a.g, b.g), hn::Add(a.b, b.b)};
-}
-
-/// Sums of neighbouring lanes: half of them from `low`, half from `high`.
-HWY_INLINE VF sum_pairs(VF low, VF high) {
-#if HWY_TARGET == HWY_SCALAR
-    return hn::Add(low, high);
-#else
+void find_curved(std::span<const float> values, float share, std::vector<std::uint32_t>& found) {
     const F f;
-    return hn::Add(hn::ConcatEven(f, high, low), hn::ConcatOdd(f, high, low));
-#endif
-}
-
-/// The next Lanes cells.
-struct Cells {
-    VU above_low, above_high, below_low, below_high;
-
-    explicit HWY_INLINE Cells(const std::uint32_t* row)
-        : above_low(hn::LoadU(U(), row)),
-          above_high(hn::LoadU(U(), row + hn::Lanes(U()))),
-          below_low(hn::LoadU(U(), row + mask_side)),
-          below_high(hn::LoadU(U(), row + mask_side + hn::Lanes(U()))) {}
-
-    [[nodiscard]] HWY_INLINE bool black() const {
-        const VU all = hn::Or(hn::Or(above_low, above_high), hn::Or(below_low, below_high));
-        return hn::AllTrue(U(), hn::Eq(all, hn::Zero(U())));
-    }
-    [[nodiscard]] HWY_INLINE Spectrums sums() const {
-        const Spectrums low = add(unpack(above_low), unpack(below_low)),
-                        high = add(unpack(above_high), unpack(below_high));
-        return {sum_pairs(low.r, high.r), sum_pairs(low.g, high.g), sum_pairs(low.b, high.b)};
-    }
-};
-
-void sum_all(std::span<const std::uint32_t> radiance, const CellWeights& weights, std::span<float> products,
-             Spectrum& out) {
-    const F f;
-    constexpr std::size_t side = mask_side / 2;
-    const std::size_t lanes = hn::Lanes(f);
-    Spectrums sum{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
-    for (std::size_t y = 0; y < side; ++y)
-        for (std::size_t x = 0; x < side; x += lanes) {
-            const std::size_t cell = y * side + x;
-            const Cells cells(&radiance[y * 2 * mask_side + 2 * x]);
-            if (cells.black()) {  // much of it where gather rays bring back emission alone
-                if (!products.empty()) hn::StoreU(hn::Zero(f), f, &products[cell]);
-                continue;
-            }
-            const Spectrums radiant = cells.sums();
-            const Spectrums term{hn::Mul(radiant.r, hn::LoadU(f, &weights.r[cell])),
-                                 hn::Mul(radiant.g, hn::LoadU(f, &weights.g[cell])),
-                                 hn::Mul(radiant.b, hn::LoadU(f, &weights.b[cell]))};
-            sum = add(sum, term);
-            if (products.empty()) continue;
-            const VF luminance =
-                hn::MulAdd(term.r, hn::Set(f, 0.2126f),
-                           hn::MulAdd(term.g, hn::Set(f, 0.7152f), hn::Mul(term.b, hn::Set(f, 0.0722f))));
-            hn::StoreU(luminance, f, &products[cell]);
+    const VF limit = hn::Set(f, share), noticeable = hn::Set(f, mean(values));
+    constexpr std::uint64_t inner = ~std::uint64_t{0} >> 2 << 1;  // neither the first nor the last column
+    for (std::size_t y = 1; y + 1 < side; ++y) {
+        std::uint64_t row = 0;
+        for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
+            const float* at = &values[y * side + x];
+            const VF value = hn::LoadU(f, at);
+            const auto curved = hn::Gt(curvature(at, value), hn::Mul(limit, hn::Add(value, noticeable)));
+            std::uint64_t bits = 0;
+            hn::StoreMaskBits(f, curved, reinterpret_cast<std::uint8_t*>(&bits));
+            row |= bits << x;
         }
-    out = {hn::GetLane(hn::SumOfLanes(f, sum.r)), hn::GetLane(hn::SumOfLanes(f, sum.g)),
-           hn::GetLane(hn::SumOfLanes(f, sum.b))};
+        for (row &= inner; row != 0; row &= row - 1)
+            found.push_back(static_cast<std::uint32_t>(y * side)
+                            + static_cast<std::uint32_t>(std::countr_zero(row)));
+    }
 }
 
 }  // namespace
@@ -111,12 +78,17 @@ HWY_AFTER_NAMESPACE();
 namespace relumine {
 
 HWY_EXPORT(sum_all);
+HWY_EXPORT(find_curved);
 
-Spectrum sum_cells(std::span<const std::uint32_t> radiance, const CellWeights& weights,
+Spectrum sum_cells(std::span<const std::uint32_t> radiance, const Mask& lit, const CellWeights& weights,
                    std::span<float> products) {
     Spectrum sum;
-    HWY_DYNAMIC_DISPATCH(sum_all)(radiance, weights, products, sum);
+    HWY_DYNAMIC_DISPATCH(sum_all)(radiance, lit, weights, products, sum);
     return sum;
+}
+
+void find_curved_cells(std::span<const float> values, float share, std::vector<std::uint32_t>& found) {
+    HWY_DYNAMIC_DISPATCH(find_curved)(values, share, found);
 }
 
 }  // namespace relumine

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cache/draw_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "cache/cells-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::HWY_NAMESPACE {
@@ -18,236 +20,215 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using U = hn::CappedTag<std::uint32_t, surfel_padding>;
 using VU = hn::Vec<U>;
+using I = hn::Rebind<std::int32_t, U>;
 
-/// Whether a row of a surfel's texels fits into one vector, from where it is stretched by a table look-up.
-constexpr bool row_fits = hn::MaxLanes(U()) >= max_surfel_side;
+/// Rows of bits are changed in windows of eight, read and written at multiples of a vector: what one surfel
+/// has written is then forwarded to the next, which a load across two stores would have to wait for. Most
+/// surfels fit into one window; a loop whose count is guessed wrongly costs more than rows that change
+/// nothing.
+constexpr std::uint32_t window_rows = 8;
+using R = hn::CappedTag<std::uint64_t, 8>;
+using VR = hn::Vec<R>;
 
-/// A row of bits in one register. Rows are always read and written whole: what one surfel has written is then
-/// forwarded to the next, which a load wider than the store, or across two of them, would have to wait for.
-struct RowBits {
+/// Rows of ones between rows of zeros: from where a window is read decides which of its rows are ones.
+struct alignas(64) RowsOfOnes {
+    std::array<MaskRow, 2 * window_rows> from{}, below{};
+    constexpr RowsOfOnes() {
+        for (std::size_t i = 0; i < window_rows; ++i) from[window_rows + i] = below[i] = ~MaskRow{};
+    }
+};
+constexpr RowsOfOnes rows_of_ones;
+
+HWY_INLINE VR repeated(const MaskRow& row, std::size_t word) {
 #if HWY_TARGET == HWY_SCALAR
-    MaskRow v;
-    static HWY_INLINE RowBits load(const MaskRow& row) { return {row}; }
-    HWY_INLINE void store(MaskRow& row) const { row = v; }
-    HWY_INLINE RowBits operator&(RowBits b) const { return {v & b.v}; }
-    HWY_INLINE RowBits operator|(RowBits b) const { return {v | b.v}; }
-    HWY_INLINE RowBits without(RowBits b) const { return {v & ~b.v}; }
-    [[nodiscard]] HWY_INLINE bool any() const { return v.any(); }
+    return hn::Set(R(), word % 2 == 0 ? row.low : row.high);
 #else
-    using R = hn::FixedTag<std::uint64_t, 2>;
-    hn::Vec<R> v;
-    static HWY_INLINE RowBits load(const MaskRow& row) { return {hn::LoadU(R(), &row.low)}; }
-    HWY_INLINE void store(MaskRow& row) const { hn::StoreU(v, R(), &row.low); }
-    HWY_INLINE RowBits operator&(RowBits b) const { return {hn::And(v, b.v)}; }
-    HWY_INLINE RowBits operator|(RowBits b) const { return {hn::Or(v, b.v)}; }
-    HWY_INLINE RowBits without(RowBits b) const { return {hn::AndNot(b.v, v)}; }
-    [[nodiscard]] HWY_INLINE bool any() const { return !hn::AllTrue(R(), hn::Eq(v, hn::Zero(R()))); }
+    (void)word;
+    return hn::LoadDup128(R(), &row.low);
 #endif
+}
+
+/// Calls change(words, bits) for all the mask's words that the rectangle touches; `bits` are the rectangle's.
+template <typename Change>
+HWY_INLINE void for_rows(const BitRect& rect, Mask& mask, const Change& change) {
+    const MaskRow span = bit_span(rect.x0, rect.x1);
+    std::uint32_t y = rect.y0;
+    do {
+        const std::uint32_t first = std::min(y & ~3u, mask_side - window_rows);
+        const std::uint64_t* from = &rows_of_ones.from[window_rows - (y - first)].low;
+        const std::uint64_t* below =
+            &rows_of_ones.below[window_rows - std::min(rect.y1 - first, window_rows)].low;
+        std::uint64_t* words = &mask.rows[first].low;
+        for (std::size_t i = 0; i < 2 * window_rows; i += hn::Lanes(R()))
+            change(words + i,
+                   hn::And(repeated(span, i), hn::And(hn::LoadU(R(), from + i), hn::LoadU(R(), below + i))));
+        y = first + window_rows;
+    } while (y < rect.y1);
+}
+
+/// Takes the rectangles from the open bits; whether any was open.
+bool take(std::span<const BitRect> rects, Mask& open) {
+    VR taken = hn::Zero(R());
+    for (const BitRect& rect : rects)
+        for_rows(rect, open, [&](std::uint64_t* words, VR bits) {
+            const VR before = hn::Load(R(), words);
+            hn::Store(hn::AndNot(bits, before), R(), words);
+            taken = hn::Or(taken, hn::And(before, bits));
+        });
+    return !hn::AllTrue(R(), hn::Eq(taken, hn::Zero(R())));
+}
+
+/// Columns [begin, begin + Lanes) of the square, begin a multiple of the lanes: canvas and bits are then read
+/// and written at multiples of a vector.
+struct Block {
+    std::uint32_t begin;
+
+    [[nodiscard]] HWY_INLINE hn::Mask<U> of(const MaskRow& row) const { return cells::lanes_of(row, begin); }
+    [[nodiscard]] HWY_INLINE VU columns() const { return hn::Add(hn::Iota(U(), 0), hn::Set(U(), begin)); }
 };
 
-/// So many columns of a rectangle are drawn at a time.
-constexpr std::uint32_t widest = 32;
+/// Stretches rows of a surfel's texels over its rectangle.
+struct Stretch {
+    VU texel;
+    hn::Mask<U> inside;  // lanes of the block that the rectangle has
 
-/// Columns [x0, x0 + width) of the rows of the open bits.
-struct OpenColumns {
-    RowBits span;
-    std::size_t byte;     // of the row, from where eight hold the columns
-    std::uint32_t shift;  // of column x0 therein
-    std::uint64_t columns;
-
-    HWY_INLINE OpenColumns(std::uint32_t x0, std::uint32_t width)
-        : span(RowBits::load(bit_span(static_cast<int>(x0), static_cast<int>(x0 + width)))),
-          byte(std::min(x0 / 8, 8u)),
-          shift(x0 - 8 * static_cast<std::uint32_t>(byte)),
-          columns((std::uint64_t{1} << width) - 1) {}
-
-    /// Takes what is open of a row; bit 0 of it is column x0.
-    HWY_INLINE std::uint64_t take(MaskRow& open) const {
-        std::uint64_t bits;
-        std::memcpy(&bits, reinterpret_cast<const char*>(&open) + byte, sizeof bits);
-        RowBits::load(open).without(span).store(open);
-        return bits >> shift & columns;
+    HWY_INLINE Stretch(const TexelSteps& steps, const BitRect& rect, const Block& block) {
+        const U u;
+        const VU bit = hn::Sub(block.columns(), hn::Set(u, rect.x0)), step = hn::Set(u, steps.step());
+        inside = hn::RebindMask(u, hn::Lt(hn::BitCast(I(), bit), hn::Set(I(), rect.width())));
+        inside = hn::And(inside, hn::RebindMask(u, hn::Gt(hn::BitCast(I(), bit), hn::Set(I(), -1))));
+        const VU found = hn::ShiftRight<16>(hn::Add(hn::Mul(bit, step), hn::ShiftRight<1>(step)));
+        texel = hn::Min(found, hn::Set(u, max_surfel_side - 1));  // of lanes that are not inside
     }
-};
-static_assert(std::endian::native == std::endian::little);
 
-/// The lanes from `first` on of a surfel's row, stretched to its rectangle's width.
-HWY_INLINE VU stretched(const std::uint32_t* texels, const TexelSteps& steps, std::uint32_t first) {
-    const U u;
-    if constexpr (row_fits) {
-        const VU bit = hn::Add(hn::Iota(u, 0), hn::Set(u, first));
-        const VU step = hn::Set(u, steps.step());
-        const VU texel = hn::ShiftRight<16>(hn::Add(hn::Mul(bit, step), hn::ShiftRight<1>(step)));
-        const VU inside = hn::Min(texel, hn::Set(u, max_surfel_side - 1));  // lanes past the rectangle
-        return hn::TableLookupLanes(hn::LoadU(u, texels), hn::IndicesFromVec(u, inside));
-    } else {
-        HWY_ALIGN std::uint32_t lanes[surfel_padding];
-        for (std::uint32_t i = 0; i < hn::Lanes(u); ++i)
-            lanes[i] = texels[std::min(steps(first + i), max_surfel_side - 1)];
-        return hn::Load(u, lanes);
-    }
-}
-
-HWY_INLINE void store_under_mask(VU values, std::uint64_t bits, std::uint32_t* out) {
-    const U u;
-    hn::BlendedStore(values, hn::LoadMaskBits(u, reinterpret_cast<const std::uint8_t*>(&bits)), u, out);
-}
-
-/// The part of a surfel's drawing that is the same for all its rows.
-struct Brush {
-    BitRect rect;
-    TexelSteps columns, rows;
-    const std::uint32_t* texels;  // the surfel's first
-    std::size_t side;             // texels from one row to the next
-
-    HWY_INLINE Brush(const BitRect& r, const TexelRect& part, std::span<const std::uint32_t> texture,
-                     std::size_t texture_side)
-        : rect(r),
-          columns(part.width, static_cast<std::uint32_t>(r.width())),
-          rows(part.height, static_cast<std::uint32_t>(r.height())),
-          texels(&texture[part.v * texture_side + part.u]),
-          side(texture_side) {}
-
-    /// Writes the columns [begin, end) of the rectangle's row y where `fresh` is set; bit 0 of it is column
-    /// `begin`.
-    HWY_INLINE void write(std::uint32_t y, std::uint32_t begin, std::uint32_t end, std::uint64_t fresh,
-                          std::uint32_t* canvas) const {
-        const std::uint32_t* row = texels + rows(y) * side;
-        std::uint32_t* out = canvas + (rect.y0 + y) * mask_side + rect.x0;
-        for (std::uint32_t x = begin; x < end; x += static_cast<std::uint32_t>(hn::Lanes(U())))
-            store_under_mask(stretched(row, columns, x), fresh >> (x - begin), out + x);
-    }
-};
-
-/// Single texels are the most frequent surfels: one colour over a few bits.
-constexpr std::uint32_t dot_width = 4;
-
-HWY_INLINE void dot_row(std::uint32_t color, std::uint64_t fresh, std::uint32_t* out) {
-    const hn::CappedTag<std::uint32_t, dot_width> d;
-    for (std::size_t x = 0; x < dot_width; x += hn::Lanes(d)) {
-        const std::uint64_t bits = fresh >> x;
-        const auto mask = hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&bits));
-        hn::StoreU(hn::IfThenElse(mask, hn::Set(d, color), hn::LoadU(d, out + x)), d, out + x);
-    }
-}
-
-/// Black texels: the canvas is black where nothing has been drawn.
-/// `drawn`: bits are added to it, any row's.
-HWY_INLINE void draw_black(const BitRect& rect, Mask& open, RowBits& drawn) {
-    const RowBits span = RowBits::load(bit_span(rect.x0, rect.x1));
-    const std::size_t y1 = rect.y1;
-    for (std::size_t y = rect.y0; y < y1; ++y) {
-        const RowBits row = RowBits::load(open.rows[y]);
-        row.without(span).store(open.rows[y]);
-        drawn = drawn | (row & span);
-    }
-}
-
-template <bool with_direct>
-HWY_INLINE bool draw_dot(const Brush& brush, const Brush& direct, const Canvas& canvas) {
-    const BitRect& rect = brush.rect;
-    const std::uint32_t color = brush.texels[0], direct_color = direct.texels[0];
-    const OpenColumns columns(rect.x0, static_cast<std::uint32_t>(rect.width()));
-    std::uint64_t any = 0;
-    for (std::size_t y = rect.y0; y < rect.y1; ++y) {
-        const std::uint64_t fresh = columns.take(canvas.open.rows[y]);
-        if (fresh == 0) continue;
-        any |= fresh;
-        dot_row(color, fresh, &canvas.radiance[y * mask_side + rect.x0]);
-        if constexpr (with_direct) dot_row(direct_color, fresh, &canvas.direct[y * mask_side + rect.x0]);
-    }
-    return any != 0;
-}
-
-/// Surfels whose rectangle's rows fit into one vector: a row of texels is stretched once for all rows that
-/// show it.
-template <bool with_direct>
-HWY_INLINE bool draw_narrow(const Brush& brush, const Brush& direct, const Canvas& canvas) {
-    const BitRect& rect = brush.rect;
-    const auto width = static_cast<std::uint32_t>(rect.width());
-    const OpenColumns columns(rect.x0, width);
-    std::uint32_t* const out = &canvas.radiance[rect.y0 * mask_side + rect.x0];
-    VU row = hn::Zero(U());
-    std::uint64_t any = 0;
-    std::uint32_t row_number = ~0u;
-    for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(rect.height()); ++y) {
-        const std::uint64_t fresh = columns.take(canvas.open.rows[rect.y0 + y]);
-        if (fresh == 0) continue;
-        any |= fresh;
-        if (const std::uint32_t wanted = brush.rows(y); wanted != row_number) {
-            row_number = wanted;
-            row = stretched(brush.texels + wanted * brush.side, brush.columns, 0);
-        }
-        store_under_mask(row, fresh, out + y * mask_side);
-        if constexpr (with_direct) direct.write(y, 0, width, fresh, canvas.direct.data());
-    }
-    return any != 0;
-}
-
-template <bool with_direct>
-bool draw_wide(const Brush& brush, const Brush& direct, const Canvas& canvas) {
-    const BitRect& rect = brush.rect;
-    std::uint64_t any = 0;
-    for (std::uint32_t x = rect.x0; x < rect.x1; x += widest) {
-        const std::uint32_t begin = x - rect.x0, width = std::min(widest, rect.x1 - x);
-        const OpenColumns columns(x, width);
-        for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(rect.height()); ++y) {
-            const std::uint64_t fresh = columns.take(canvas.open.rows[rect.y0 + y]);
-            if (fresh == 0) continue;
-            any |= fresh;
-            brush.write(y, begin, begin + width, fresh, canvas.radiance.data());
-            if constexpr (with_direct) direct.write(y, begin, begin + width, fresh, canvas.direct.data());
-        }
-    }
-    return any != 0;
-}
-
-/// One surfel; whether any of its bits were open.
-template <bool with_direct>
-HWY_INLINE bool draw(const BitRect& mask, const TexelRect& texels, const RecordTexture& texture,
-                     const Canvas& canvas) {
-    const Brush brush(mask, texels, texture.radiance, texture.side);
-    const Brush direct = with_direct ? Brush(mask, texels, texture.direct, texture.side) : brush;
-    const auto width = static_cast<std::uint32_t>(mask.width());
-    if (width <= dot_width && texels.width == 1 && texels.height == 1)
-        return draw_dot<with_direct>(brush, direct, canvas);
-    return width <= hn::Lanes(U()) ? draw_narrow<with_direct>(brush, direct, canvas)
-                                   : draw_wide<with_direct>(brush, direct, canvas);
-}
-
-template <bool with_direct>
-bool draw_each(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
-               const Canvas& canvas) {
-    bool any = false;
-    RowBits black = RowBits::load({});
-    for (std::size_t i = 0; i < masks.size(); ++i) {
-        if (masks[i].empty()) continue;
-        if (surfels.black[i] != 0)
-            draw_black(masks[i], canvas.open, black);
+    HWY_INLINE VU operator()(const std::uint32_t* texels) const {
+        if constexpr (hn::MaxLanes(U()) >= max_surfel_side)
+            return hn::TableLookupLanes(hn::LoadU(U(), texels), hn::IndicesFromVec(U(), texel));
         else
-            any |= draw<with_direct>(masks[i], surfels.texels[i], texture, canvas);
+            return hn::GatherIndex(U(), texels, hn::BitCast(I(), texel));
     }
-    return any || black.any();
+};
+
+/// A surfel's texels over its rectangle, where bits are open. `rect` and `part` are copies: bytes might be
+/// any memory's, and would be read again after every store.
+HWY_NOINLINE void paint(const BitRect rect, const TexelRect part, std::span<const std::uint32_t> texture,
+                        std::size_t side, const Mask& open, std::span<std::uint32_t> canvas) {
+    const auto lanes = static_cast<std::uint32_t>(hn::Lanes(U()));
+    const TexelSteps across(part.width, static_cast<std::uint32_t>(rect.width())),
+        down(part.height, static_cast<std::uint32_t>(rect.height()));
+    const std::uint32_t* const texels = &texture[part.v * side + part.u];
+    const std::size_t height = static_cast<std::size_t>(rect.height());
+    for (Block block{rect.x0 / lanes * lanes}; block.begin < rect.x1; block.begin += lanes) {
+        const Stretch stretch(across, rect, block);
+        const MaskRow* row = &open.rows[rect.y0];
+        std::uint32_t* out = &canvas[rect.y0 * std::size_t{mask_side} + block.begin];
+        std::size_t texel = down.step() / 2;  // of TexelSteps
+        for (std::size_t y = 0; y < height; ++y, texel += down.step(), ++row, out += mask_side)
+            hn::BlendedStore(stretch(texels + (texel >> 16) * side), hn::And(stretch.inside, block.of(*row)),
+                             U(), out);
+    }
+}
+
+/// From the last surfel to the first, so that the first stays on top while the open bits stay as they are:
+/// no surfel waits for the one before.
+void paint_all(std::span<const BitRect> masks, std::span<const TexelRect> texels,
+               const RecordTexture& texture, const Canvas& canvas) {
+    for (std::size_t i = masks.size(); i-- > 0;) {
+        if (masks[i].empty()) continue;
+        paint(masks[i], texels[i], texture.radiance, texture.side, canvas.open, canvas.radiance);
+        if (!canvas.direct.empty())
+            paint(masks[i], texels[i], texture.direct, texture.side, canvas.open, canvas.direct);
+    }
+}
+
+/// The texels of a square of eight columns that were missed, as bits from the surfel's first column on.
+struct MissedTexels {
+    const std::uint8_t* row;  // of the surfel's first row
+    std::size_t pitch;        // bytes from one row to the next
+    std::uint32_t shift;
+
+    HWY_INLINE MissedTexels(const TexelRect& part, std::span<const std::uint8_t> missed, std::size_t side)
+        : row(&missed[(part.v * side + part.u) / 8]), pitch(side / 8), shift(part.u % 8) {}
+    [[nodiscard]] HWY_INLINE VU operator()(std::size_t texel) const {
+        return hn::Set(U(), static_cast<std::uint32_t>(row[texel * pitch] >> shift));
+    }
+};
+
+HWY_INLINE void add_lanes(hn::Mask<U> lanes, std::uint32_t column, MaskRow& row) {
+    using Bits = std::conditional_t<(hn::MaxLanes(U()) > 8), std::uint16_t, std::uint8_t>;
+    Bits bits;  // no wider than what is stored, or the load would have to wait for it
+    hn::StoreMaskBits(U(), lanes, reinterpret_cast<std::uint8_t*>(&bits));
+    (column < 64 ? row.low : row.high) |= std::uint64_t{bits} << column % 64;
+}
+
+/// As paint, but for texels that were hit. `drawn`: bits are added to it.
+template <bool with_direct>
+HWY_NOINLINE void paint_missed(const BitRect rect, const TexelRect part, const RecordTexture& texture,
+                               const Canvas& canvas, Mask& drawn) {
+    const auto lanes = static_cast<std::uint32_t>(hn::Lanes(U()));
+    const TexelSteps across(part.width, static_cast<std::uint32_t>(rect.width())),
+        down(part.height, static_cast<std::uint32_t>(rect.height()));
+    const std::size_t side = texture.side, first = part.v * side + part.u;
+    const std::uint32_t *const texels = &texture.radiance[first], *const direct_texels =
+                                                                      with_direct ? &texture.direct[first]
+                                                                                  : nullptr;
+    std::uint32_t *const radiance = canvas.radiance.data(), *const direct = canvas.direct.data();
+    const MissedTexels missed(part, texture.missed, side);
+    const std::size_t height = static_cast<std::size_t>(rect.height());
+    for (Block block{rect.x0 / lanes * lanes}; block.begin < rect.x1; block.begin += lanes) {
+        const Stretch stretch(across, rect, block);
+        const VU bit_of_texel = hn::Shl(hn::Set(U(), 1), stretch.texel);
+        const MaskRow* row = &canvas.open.rows[rect.y0];
+        MaskRow* drawn_row = &drawn.rows[rect.y0];
+        std::size_t at = rect.y0 * std::size_t{mask_side} + block.begin;
+        std::size_t position = down.step() / 2;  // of TexelSteps
+        for (std::size_t y = 0; y < height; ++y, position += down.step(), at += mask_side) {
+            const std::size_t texel = position >> 16;
+            const auto fresh =
+                hn::And(hn::And(stretch.inside, block.of(row[y])), hn::TestBit(missed(texel), bit_of_texel));
+            hn::BlendedStore(stretch(texels + texel * side), fresh, U(), radiance + at);
+            if constexpr (with_direct)
+                hn::BlendedStore(stretch(direct_texels + texel * side), fresh, U(), direct + at);
+            add_lanes(fresh, block.begin, drawn_row[y]);
+        }
+    }
+}
+
+bool draw_all_missed(std::span<const BitRect> masks, std::span<const TexelRect> texels,
+                     const RecordTexture& texture, const Canvas& canvas) {
+    Mask drawn;
+    const auto paint_one = canvas.direct.empty() ? paint_missed<false> : paint_missed<true>;
+    for (std::size_t i = masks.size(); i-- > 0;)
+        if (!masks[i].empty()) paint_one(masks[i], texels[i], texture, canvas, drawn);
+    MaskRow any;
+    for (std::size_t y = 0; y < mask_side; ++y) {
+        any = any | drawn.rows[y];
+        canvas.lit.rows[y] = canvas.lit.rows[y] | drawn.rows[y];
+        canvas.open.rows[y] = canvas.open.rows[y] & ~drawn.rows[y];
+    }
+    return any.any();
 }
 
 bool draw_all(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
               const Canvas& canvas) {
-    return canvas.direct.empty() ? draw_each<false>(masks, surfels, texture, canvas)
-                                 : draw_each<true>(masks, surfels, texture, canvas);
+    if (surfels.colored == 0) return take(masks, canvas.open);
+    paint_all(masks.first(surfels.colored), surfels.texels, texture, canvas);
+    const Mask before = canvas.open;
+    const bool any = take(masks.first(surfels.colored), canvas.open);
+    for (std::size_t y = 0; y < mask_side; ++y)
+        canvas.lit.rows[y] = canvas.lit.rows[y] | (before.rows[y] & ~canvas.open.rows[y]);
+    return take(masks.subspan(surfels.colored), canvas.open) || any;
 }
 
 /// Trails are many and long: only their union touches the other masks.
-void close_all(std::span<const BitRect> trails, std::span<const BitRect> masks, Mask& open, Mask& unknown) {
-    Mask closed;
+void close_all(std::span<const BitRect> trails, Mask& closed, Mask& open, Mask& unknown) {
     std::uint32_t first = mask_side, last = 0;
-    for (std::size_t i = 0; i < trails.size(); ++i) {
-        const BitRect trail = trails[i];
-        if (trail.empty() || trail == masks[i]) continue;
+    for (const BitRect& trail : trails) {
         first = std::min<std::uint32_t>(first, trail.y0);
         last = std::max<std::uint32_t>(last, trail.y1);
-        const RowBits span = RowBits::load(bit_span(trail.x0, trail.x1));
-        for (std::size_t y = trail.y0; y < trail.y1; ++y)
-            (RowBits::load(closed.rows[y]) | span).store(closed.rows[y]);
+        for_rows(trail, closed, [](std::uint64_t* words, VR bits) {
+            hn::Store(hn::Or(hn::Load(R(), words), bits), R(), words);
+        });
     }
     for (std::size_t y = first; y < last; ++y) {
         unknown.rows[y] = unknown.rows[y] | (open.rows[y] & closed.rows[y]);
@@ -263,6 +244,7 @@ HWY_AFTER_NAMESPACE();
 namespace relumine {
 
 HWY_EXPORT(draw_all);
+HWY_EXPORT(draw_all_missed);
 HWY_EXPORT(close_all);
 
 bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
@@ -270,9 +252,13 @@ bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, c
     return HWY_DYNAMIC_DISPATCH(draw_all)(masks, surfels, texture, canvas);
 }
 
-void close_trails(std::span<const BitRect> trails, std::span<const BitRect> masks, Mask& open,
-                  Mask& unknown) {
-    HWY_DYNAMIC_DISPATCH(close_all)(trails, masks, open, unknown);
+bool draw_missed(std::span<const BitRect> masks, std::span<const TexelRect> texels,
+                 const RecordTexture& texture, const Canvas& canvas) {
+    return HWY_DYNAMIC_DISPATCH(draw_all_missed)(masks, texels, texture, canvas);
+}
+
+void close_trails(std::span<const BitRect> trails, Mask& closed, Mask& open, Mask& unknown) {
+    HWY_DYNAMIC_DISPATCH(close_all)(trails, closed, open, unknown);
 }
 
 }  // namespace relumine

@@ -34,7 +34,8 @@ class TexelSteps {
 /// What surfels are drawn into.
 struct Canvas {
     Mask& open;                         // bits that may be drawn; those drawn are taken away
-    std::span<std::uint32_t> radiance;  // mask_side², row-major in (y, x), 0 where nothing has been drawn
+    Mask& lit;                          // bits drawn that may not be black are added
+    std::span<std::uint32_t> radiance;  // mask_side², row-major in (y, x); black surfels leave it alone
     std::span<std::uint32_t> direct;    // the same, or empty
 };
 
@@ -43,21 +44,27 @@ struct RecordTexture {
     std::span<const std::uint32_t> radiance;  // side² (+ surfel_padding), row-major in (v, u)
     std::span<const std::uint32_t> direct;    // the same; used only where the canvas keeps it
     std::size_t side;
+    std::span<const std::uint8_t> missed;  // side²/8, bit u % 8 of byte (v · side + u)/8: at infinity
 };
 
 /// Which surfels.
 struct DrawnSurfels {
     std::span<const TexelRect> texels;
-    std::span<const std::uint8_t> black;  // whether all texels are
+    std::size_t colored;  // so many come first; all texels of the others are black
 };
 
-/// Draws surfels one after the other where bits are open; whether any bit was. `masks[i]` belongs to
+/// Draws surfels where bits are open, the first on top; whether any bit was. `masks[i]` belongs to
 /// surfel i; the canvas's arrays must have room for surfel_padding more elements past what is drawn.
 bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
                   const Canvas& canvas);
 
-/// Takes what lies in the surfels' trails from the open bits and adds it to the unknown ones. A trail that is
-/// no larger than its mask, which has been drawn, is passed over.
-void close_trails(std::span<const BitRect> trails, std::span<const BitRect> masks, Mask& open, Mask& unknown);
+/// The same for surfels at infinity, whose texels are drawn only where they were missed. A surfel lies within
+/// eight columns of texels from a multiple of eight on.
+bool draw_missed(std::span<const BitRect> masks, std::span<const TexelRect> texels,
+                 const RecordTexture& texture, const Canvas& canvas);
+
+/// Takes what lies in the trails of a layer, whose surfels have been drawn, from the open bits and adds it to
+/// the unknown ones. `closed`: the trails of the layers before; those of this one are added.
+void close_trails(std::span<const BitRect> trails, Mask& closed, Mask& open, Mask& unknown);
 
 }  // namespace relumine

@@ -99,6 +99,7 @@ void fill_gaps(const IncidentRadiance& source, const GatherPoint& point, int k, 
     const std::span<const GapRay> all(rays);
     for (std::size_t i = 0; i < all.size(); i += packet_size)
         tracer.trace(all.subspan(i, std::min(packet_size, all.size() - i)), counts);
+    incident.lit = incident.lit | ~incident.covered;
     incident.covered = ~Mask{};
 }
 

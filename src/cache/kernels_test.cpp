@@ -9,6 +9,7 @@
 #include "cache/draw_kernel.hpp"
 #include "cache/hemisphere_map.hpp"
 #include "cache/project_kernel.hpp"
+#include "cache/receiver_bsdf.hpp"
 #include "cache/test_random.hpp"
 #include "tests/targets.hpp"
 
@@ -84,14 +85,15 @@ Box bounds(const std::array<Corner, 4>& p) {
 ScalarProjection project_one(const Surfels& s, std::size_t i, const Projection& projection) {
     std::array<Corner, 4> now;
     Vec3 middle;
-    const Vec3 shift = projection.frame.to_local({projection.shift / s.scale}).v;
+    const Vec3 shift = projection.shift / s.scale;
     for (std::size_t c = 0; c < 4; ++c) {
         const auto plane = [&](std::size_t axis) {
             half h;
             h.setBits(s.corners[(3 * c + axis) * s.stride + i]);
             return static_cast<float>(h);
         };
-        const Vec3 q = projection.frame.to_local({{plane(0), plane(1), plane(2)}}).v;
+        const Vec3 p{plane(0), plane(1), plane(2)};
+        const Vec3 q = projection.rotated ? projection.turn.to_local({p}).v : p;
         now[c] = project_corner(q + shift);
         middle = middle + q;
     }
@@ -150,7 +152,7 @@ TEST(ProjectKernel, AgreesWithTheMap) {
 }
 
 struct Drawing {
-    Mask open;
+    Mask open, lit;
     std::vector<std::uint32_t> radiance = std::vector<std::uint32_t>(mask_bits + surfel_padding);
     std::vector<std::uint32_t> direct = std::vector<std::uint32_t>(mask_bits + surfel_padding);
 };
@@ -171,81 +173,137 @@ void draw_one(const BitRect& rect, const TexelRect& texels, bool black, const Re
             bit.fill({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(x + 1),
                       static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(y + 1)});
             out.open = out.open & ~bit;
+            if (!black) out.lit = out.lit | bit;
         }
 }
 
+/// Bit by bit, the texels that were missed.
+void draw_missed_one(const BitRect& rect, const TexelRect& texels, const RecordTexture& texture,
+                     Drawing& out) {
+    const TexelSteps columns(texels.width, static_cast<std::uint32_t>(rect.width())),
+        rows(texels.height, static_cast<std::uint32_t>(rect.height()));
+    for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x) {
+            const std::uint32_t v = texels.v + rows(static_cast<std::uint32_t>(y - rect.y0)),
+                                u = texels.u + columns(static_cast<std::uint32_t>(x - rect.x0));
+            const std::size_t texel = v * texture.side + u;
+            const auto byte = [](int i) { return static_cast<std::uint8_t>(i); };
+            if ((texture.missed[texel / 8] >> texel % 8 & 1) != 0)
+                draw_one({byte(x), byte(x + 1), byte(y), byte(y + 1)},
+                         {byte(static_cast<int>(u)), byte(static_cast<int>(v)), 1, 1}, false, texture, out);
+        }
+}
+
+std::uint8_t random_byte(std::uint64_t i, std::uint64_t what, float low, float high) {
+    return static_cast<std::uint8_t>(uniform(i, what, low, high));
+}
+
+/// Anywhere in the square, also at its last rows and columns, and empty ones.
+BitRect random_rect(std::uint64_t i, float widest, float highest) {
+    const std::uint8_t x0 = random_byte(i, 1, 0, 128), y0 = random_byte(i, 2, 0, 128);
+    return {x0, static_cast<std::uint8_t>(std::min(128.0f, x0 + uniform(i, 3, 0, widest))), y0,
+            static_cast<std::uint8_t>(std::min(128.0f, y0 + uniform(i, 4, 0, highest)))};
+}
+
 TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
-    constexpr std::size_t side = 64;
+    constexpr std::size_t side = 64, count = 120, colored = 90;
     std::vector<std::uint32_t> texture(side * side + surfel_padding), direct = texture;
     for (std::size_t i = 0; i < side * side; ++i) {
         texture[i] = static_cast<std::uint32_t>(hash(i, 1)) | 1;
         direct[i] = static_cast<std::uint32_t>(hash(i, 2)) | 1;
     }
-    const RecordTexture record{texture, direct, side};
+    const RecordTexture record{texture, direct, side, {}};
     std::vector<BitRect> masks;
     std::vector<TexelRect> texels;
-    std::vector<std::uint8_t> black;
-    for (std::uint64_t i = 0; i < 120; ++i) {
-        const auto byte = [&](std::uint64_t what, float low, float high) {
-            return static_cast<std::uint8_t>(uniform(i, what, low, high));
-        };
-        const float widest = i % 4 == 0 ? 128.0f : i % 4 == 1 ? 5.0f : 20.0f;
-        const std::uint8_t x0 = byte(1, 0, 128), y0 = byte(2, 0, 128);
-        masks.push_back({x0, static_cast<std::uint8_t>(std::min(128.0f, x0 + uniform(i, 3, 0, widest))), y0,
-                         static_cast<std::uint8_t>(std::min(128.0f, y0 + uniform(i, 4, 0, 12)))});
+    for (std::uint64_t i = 0; i < count; ++i) {
+        masks.push_back(random_rect(i, i % 4 == 0 ? 128.0f : i % 4 == 1 ? 5.0f : 20.0f, 22));
         const bool dot = i % 3 == 0;
-        texels.push_back({byte(5, 0, 56), byte(6, 0, 56), dot ? std::uint8_t{1} : byte(7, 1, 9),
-                          dot ? std::uint8_t{1} : byte(8, 1, 9)});
-        black.push_back(i % 5 == 0 ? 1 : 0);
+        texels.push_back({random_byte(i, 5, 0, 56), random_byte(i, 6, 0, 56),
+                          dot ? std::uint8_t{1} : random_byte(i, 7, 1, 9),
+                          dot ? std::uint8_t{1} : random_byte(i, 8, 1, 9)});
     }
+    masks[7] = {};
     Drawing expected;
     expected.open.fill({3, 120, 5, 128});
     const int open_before = expected.open.count();
-    for (std::size_t i = 0; i < masks.size(); ++i)
-        draw_one(masks[i], texels[i], black[i] != 0, record, expected);
+    for (std::size_t i = 0; i < count; ++i) draw_one(masks[i], texels[i], i >= colored, record, expected);
     ASSERT_GT(open_before - expected.open.count(), mask_bits / 3);
     on_every_target([&] {
         for (const bool with_direct : {false, true}) {
             Drawing out;
             out.open.fill({3, 120, 5, 128});
-            const Canvas canvas{out.open, out.radiance,
+            const Canvas canvas{out.open, out.lit, out.radiance,
                                 with_direct ? std::span(out.direct) : std::span<std::uint32_t>()};
-            EXPECT_TRUE(draw_surfels(masks, {texels, black}, record, canvas));
+            EXPECT_TRUE(draw_surfels(masks, {texels, colored}, record, canvas));
             EXPECT_EQ(out.open, expected.open);
+            EXPECT_EQ(out.lit, expected.lit);
             EXPECT_EQ(out.radiance, expected.radiance);
             EXPECT_TRUE(!with_direct || out.direct == expected.direct);
-            EXPECT_FALSE(draw_surfels(std::span(masks).first(0), {texels, black}, record, canvas));
-            EXPECT_FALSE(draw_surfels(masks, {texels, black}, record, canvas));  // nothing is open there now
+            EXPECT_FALSE(draw_surfels(std::span(masks).first(0), {texels, 0}, record, canvas));
+            EXPECT_FALSE(
+                draw_surfels(masks, {texels, colored}, record, canvas));  // nothing is open there now
+        }
+    });
+}
+
+TEST(DrawKernel, DrawsOnlyWhatWasMissedOnEveryTarget) {
+    constexpr std::size_t side = 64, count = 60;
+    std::vector<std::uint32_t> texture(side * side + surfel_padding), direct = texture;
+    std::vector<std::uint8_t> missed(side * side / 8);
+    for (std::size_t i = 0; i < side * side; ++i) {
+        texture[i] = static_cast<std::uint32_t>(hash(i, 1));
+        direct[i] = static_cast<std::uint32_t>(hash(i, 2));
+    }
+    for (std::size_t i = 0; i < missed.size(); ++i) missed[i] = static_cast<std::uint8_t>(hash(i, 3));
+    std::vector<BitRect> masks;
+    std::vector<TexelRect> texels;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        masks.push_back(random_rect(i, 30, 30));
+        const std::uint8_t u = random_byte(i, 5, 0, 64), v = random_byte(i, 6, 0, 56);
+        texels.push_back({u, v, static_cast<std::uint8_t>(uniform(i, 7, 1, 9.0f - static_cast<float>(u % 8))),
+                          random_byte(i, 8, 1, 9)});
+    }
+    Drawing expected;
+    expected.open.fill({3, 120, 5, 128});
+    const int open_before = expected.open.count();
+    for (std::size_t i = 0; i < count; ++i)
+        draw_missed_one(masks[i], texels[i], {texture, direct, side, missed}, expected);
+    ASSERT_GT(open_before - expected.open.count(), mask_bits / 8);
+    on_every_target([&] {
+        for (const bool with_direct : {false, true}) {
+            Drawing out;
+            out.open.fill({3, 120, 5, 128});
+            const Canvas canvas{out.open, out.lit, out.radiance,
+                                with_direct ? std::span(out.direct) : std::span<std::uint32_t>()};
+            EXPECT_TRUE(draw_missed(masks, texels, {texture, direct, side, missed}, canvas));
+            EXPECT_EQ(out.open, expected.open);
+            EXPECT_EQ(out.lit, expected.lit);
+            EXPECT_EQ(out.radiance, expected.radiance);
+            EXPECT_TRUE(!with_direct || out.direct == expected.direct);
         }
     });
 }
 
 TEST(DrawKernel, ClosesTrailsOnEveryTarget) {
-    std::vector<BitRect> trails, masks;
-    Mask open = ~Mask{}, unknown, expected_unknown;
+    std::vector<BitRect> trails;
+    Mask open = ~Mask{}, unknown, closed_before, expected_closed;
     open.rows[40] = open.rows[41] = {};
     unknown.fill({0, 9, 0, 9});
-    Mask expected_open = open;
-    expected_unknown = unknown;
+    closed_before.fill({100, 120, 90, 110});
+    open = open & ~closed_before;
+    expected_closed = closed_before;
     for (std::uint64_t i = 0; i < 30; ++i) {
-        const auto byte = [&](std::uint64_t what, float low, float high) {
-            return static_cast<std::uint8_t>(uniform(i, what, low, high));
-        };
-        const std::uint8_t x0 = byte(1, 0, 110), y0 = byte(2, 0, 110);
-        trails.push_back({x0, byte(3, x0, 129), y0, byte(4, y0, 129)});
-        masks.push_back(i % 3 == 0 ? trails.back() : BitRect{});
-        if (i % 3 == 0) continue;
-        Mask trail;
-        trail.fill(trails.back());
-        expected_unknown = expected_unknown | (trail & expected_open);
-        expected_open = expected_open & ~trail;
+        trails.push_back(random_rect(i, 50, 40));
+        expected_closed.fill(trails.back());
     }
+    const Mask expected_unknown = unknown | (expected_closed & open), expected_open = open & ~expected_closed;
     ASSERT_GT(expected_unknown.count(), 1000);
     on_every_target([&] {
-        Mask now_open = open, now_unknown = unknown;
-        close_trails(trails, masks, now_open, now_unknown);
+        Mask now_open = open, now_unknown = unknown, closed = closed_before;
+        close_trails(trails, closed, now_open, now_unknown);
         EXPECT_EQ(now_open, expected_open);
         EXPECT_EQ(now_unknown, expected_unknown);
+        EXPECT_EQ(closed, expected_closed);
     });
 }
 
@@ -253,6 +311,9 @@ TEST(CellSumKernel, AgreesWithItsDefinitionOnEveryTarget) {
     constexpr std::size_t cells = mask_bits / 4, side = mask_side / 2;
     std::vector<std::uint32_t> radiance(mask_bits);
     std::vector<float> r(cells), g(cells), b(cells);
+    Mask lit = ~Mask{};
+    lit.rows[8] = lit.rows[9] = lit.rows[20] = {};
+    lit.rows[30] = bit_span(3, 70);
     for (std::size_t i = 0; i < radiance.size(); ++i)
         if (i % 7 != 0)
             radiance[i] = pack_rgbe({uniform(i, 1, 0, 5), uniform(i, 2, 0, 1), uniform(i, 3, 0, 1e-3f)});
@@ -262,21 +323,81 @@ TEST(CellSumKernel, AgreesWithItsDefinitionOnEveryTarget) {
     std::vector<float> products(cells);
     for (std::size_t i = 0; i < cells; ++i) {
         const std::size_t bit = i / side * 2 * mask_side + i % side * 2;
-        const Spectrum sum = unpack_rgbe(radiance[bit]) + unpack_rgbe(radiance[bit + 1])
-                             + unpack_rgbe(radiance[bit + mask_side])
-                             + unpack_rgbe(radiance[bit + mask_side + 1]);
+        const auto light = [&](std::size_t at) {
+            const bool seen = lit.test(static_cast<int>(at % mask_side), static_cast<int>(at / mask_side));
+            return seen ? unpack_rgbe(radiance[at]) : Spectrum{};
+        };
+        const Spectrum sum =
+            light(bit) + light(bit + 1) + light(bit + mask_side) + light(bit + mask_side + 1);
         expected += sum * Spectrum{r[i], g[i], b[i]};
         products[i] = luminance(sum * Spectrum{r[i], g[i], b[i]});
     }
     on_every_target([&] {
         std::vector<float> found(cells);
-        const Spectrum sum = sum_cells(radiance, {r, g, b}, found);
+        const Spectrum sum = sum_cells(radiance, lit, {r, g, b}, found);
         EXPECT_NEAR(sum.r, expected.r, 1e-4f * expected.r);
         EXPECT_NEAR(sum.g, expected.g, 1e-4f * expected.g);
         EXPECT_NEAR(sum.b, expected.b, 1e-4f * expected.b);
-        EXPECT_EQ(sum, sum_cells(radiance, {r, g, b}, {}));
+        EXPECT_EQ(sum, sum_cells(radiance, lit, {r, g, b}, {}));
         for (std::size_t i = 0; i < cells; ++i)
             ASSERT_NEAR(found[i], products[i], 1e-5f * products[i] + 1e-9f);
+    });
+}
+
+TEST(CellSumKernel, FindsCurvedCellsOnEveryTarget) {
+    constexpr std::size_t side = mask_side / 2, cells = side * side;
+    std::vector<float> values(cells);
+    double mean = 0;
+    for (std::size_t i = 0; i < cells; ++i) {
+        values[i] = 1 + uniform(i, 1, 0, hash(i, 2) % 16 == 0 ? 1 : 0.05f);
+        mean += values[i] / static_cast<double>(cells);
+    }
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < cells; ++i) {
+        if (i % side == 0 || i % side == side - 1 || i / side == 0 || i / side == side - 1) continue;
+        const float bend = std::abs(values[i - 1] - 2 * values[i] + values[i + 1])
+                           + std::abs(values[i - side] - 2 * values[i] + values[i + side]);
+        if (bend > 0.3f * (values[i] + static_cast<float>(mean))) expected.push_back(i);
+    }
+    ASSERT_GT(expected.size(), 100u);
+    ASSERT_LT(expected.size(), cells / 2);
+    on_every_target([&] {
+        std::vector<std::uint32_t> found;
+        find_curved_cells(values, 0.3f, found);
+        EXPECT_EQ(found, expected);
+    });
+}
+
+TEST(CellSumKernel, SumsTheSameWithATableOfTheBsdfAsWithout) {
+    constexpr std::size_t cells = mask_bits / 4;
+    std::vector<std::uint32_t> radiance(mask_bits);
+    Mask lit;
+    lit.fill({5, 120, 7, 128});
+    for (std::size_t i = 0; i < radiance.size(); ++i)
+        if (i / 64 % 3 != 0) radiance[i] = pack_rgbe({uniform(i, 1, 0, 5), uniform(i, 2, 0, 1), 1});
+    std::vector<float> x(cells), y(cells), z(cells), r(cells), g(cells), b(cells);
+    for (std::size_t i = 0; i < cells; ++i) {
+        const Vec3 w = random_direction(i, 3);
+        x[i] = w.x, y[i] = w.y, z[i] = std::abs(w.z);
+    }
+    ReceiverBsdf bsdf;
+    bsdf.diffuse = {0.5f, 0.3f, 0.1f};
+    bsdf.specular_f0 = {0.9f, 0.6f, 0.3f};
+    bsdf.specular_f90 = Spectrum{1};
+    bsdf.specular = true;
+    bsdf.ggx.alpha = 0.4f;
+    bsdf.w_out = {normalize({0.5f, 0.2f, 0.6f})};
+    bsdf.shading_x = {1, 0, 0};
+    bsdf.shading_y = {0, 1, 0};
+    bsdf.shading_z = {0, 0, 1};
+    on_every_target([&] {
+        evaluate(bsdf, {x, y, z}, {r, g, b});
+        std::vector<float> products(cells), expected_products(cells);
+        const Spectrum expected = sum_cells(radiance, lit, {r, g, b}, expected_products);
+        EXPECT_GT(expected.g, 1);
+        EXPECT_EQ(reflect_cells(bsdf, {x, y, z}, radiance, lit, products), expected);
+        EXPECT_EQ(products, expected_products);
+        EXPECT_EQ(reflect_cells(bsdf, {x, y, z}, radiance, lit, {}), expected);
     });
 }
 

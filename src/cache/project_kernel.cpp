@@ -107,7 +107,8 @@ HWY_INLINE VU pack(const Box& box) {
 }
 
 /// In the receiver's frame, as seen from the record.
-HWY_INLINE Vec3s corner(const Surfels& surfels, std::size_t at, std::size_t number, const Frame& frame) {
+template <bool rotated>
+HWY_INLINE Vec3s corner(const Surfels& surfels, std::size_t at, std::size_t number, const Frame& turn) {
     const F f;
     const hn::Rebind<hwy::float16_t, F> h;
     const auto plane = [&](std::size_t axis) {
@@ -115,7 +116,8 @@ HWY_INLINE Vec3s corner(const Surfels& surfels, std::size_t at, std::size_t numb
         return hn::PromoteTo(f, hn::LoadU(h, reinterpret_cast<const hwy::float16_t*>(halves)));
     };
     const Vec3s q{plane(0), plane(1), plane(2)};
-    return {dot(q, frame.s), dot(q, frame.t), dot(q, frame.n)};
+    if constexpr (!rotated) return q;
+    return {dot(q, turn.s), dot(q, turn.t), dot(q, turn.n)};
 }
 
 /// The surfels' rectangles of texels, in bits.
@@ -160,29 +162,38 @@ HWY_INLINE Box centered(const Box& size, const SquarePoint& center) {
             hn::Add(center.y, height)};
 }
 
-void project(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
-             BitRect* masks, BitRect* trails) {
+template <bool rotated>
+void project_each(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
+                  BitRect* masks, BitRect* trails) {
     const U u;
     const F f;
     const float bits_per_texel = static_cast<float>(mask_side) / static_cast<float>(projection.side);
-    const Vec3 shift = projection.frame.to_local({projection.shift / surfels.scale}).v;
+    const Vec3 shift = projection.shift / surfels.scale;
     const Vec3s shifts{hn::Set(f, shift.x), hn::Set(f, shift.y), hn::Set(f, shift.z)};
     for (std::size_t i = begin; i < end; i += hn::Lanes(u)) {
         SquarePoint now[4];
         Vec3s middle{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
         for (std::size_t c = 0; c < 4; ++c) {
-            const Vec3s q = corner(surfels, i, c, projection.frame);
+            const Vec3s q = corner<rotated>(surfels, i, c, projection.turn);
             now[c] = to_square(add(q, shifts));
-            middle = add(middle, q);
+            if constexpr (rotated) middle = add(middle, q);
         }
         const Box texels = texel_box(surfels, i, bits_per_texel), mask = bounds(now);
         const auto above = above_horizon(now), used = hn::And(above, usable(now, mask, texels));
         hn::StoreU(hn::IfThenElseZero(hn::RebindMask(u, used), pack(mask)), u,
                    reinterpret_cast<std::uint32_t*>(masks + (i - begin)));
-        const Box old = projection.rotated ? centered(texels, to_square(middle)) : texels;
+        const Box old = rotated ? centered(texels, to_square(middle)) : texels;
         hn::StoreU(pack(choose(above, enclosing(old, mask), old)), u,
                    reinterpret_cast<std::uint32_t*>(trails + (i - begin)));
     }
+}
+
+void project(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
+             BitRect* masks, BitRect* trails) {
+    if (projection.rotated)
+        project_each<true>(surfels, begin, end, projection, masks, trails);
+    else
+        project_each<false>(surfels, begin, end, projection, masks, trails);
 }
 
 }  // namespace
@@ -197,6 +208,16 @@ HWY_EXPORT(project);
 void project_surfels(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
                      std::span<BitRect> masks, std::span<BitRect> trails) {
     HWY_DYNAMIC_DISPATCH(project)(surfels, begin, end, projection, masks.data(), trails.data());
+}
+
+void place_surfels(const Surfels& surfels, std::size_t begin, std::size_t end, int side,
+                   std::span<BitRect> masks) {
+    const int scale = mask_side / side;
+    const auto byte = [&](int texels) { return static_cast<std::uint8_t>(texels * scale); };
+    for (std::size_t i = begin; i < end; ++i) {
+        const TexelRect& r = surfels.texels[i];
+        masks[i - begin] = {byte(r.u), byte(r.u + r.width), byte(r.v), byte(r.v + r.height)};
+    }
 }
 
 }  // namespace relumine

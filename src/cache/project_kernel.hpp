@@ -11,9 +11,9 @@ namespace relumine {
 
 /// How a record's surfels look from a receiver.
 struct Projection {
-    Frame frame;   // of the receiver
-    Vec3 shift;    // world space, metres: record's position − receiver's position
-    bool rotated;  // the receiver's frame is not the record's
+    Frame turn;    // the receiver's axes in the record's frame
+    Vec3 shift;    // in the receiver's frame, metres: record's position − receiver's position
+    bool rotated;  // the receiver's frame is not the record's; else `turn` is not looked at
     int side;      // texels along each side of the record's texture
 };
 
@@ -32,5 +32,10 @@ inline constexpr float growth_margin = 4;  // bits: small surfels may grow more
 /// have room for surfel_padding more. All surfels at infinity or none. The same bits on every machine.
 void project_surfels(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
                      std::span<BitRect> masks, std::span<BitRect> trails);
+
+/// The surfels [begin, end) where the record has them: what is at infinity, for receivers that are not
+/// rotated.
+void place_surfels(const Surfels& surfels, std::size_t begin, std::size_t end, int side,
+                   std::span<BitRect> masks);
 
 }  // namespace relumine

@@ -39,6 +39,13 @@ struct SpectrumArrays {
 /// eval(const Bsdf&, …): 2e-4, from the half vectors of sharp lobes.
 void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out);
 
+/// Σ over cells of 2 × 2 bits of f·|cos θ| at the cell's centre × Σ over its lit bits of radiance. What is
+/// black costs nothing. `radiance`: mask_side², RGBE; `centers`: (mask_side/2)². Where `products` is not
+/// empty it receives the luminance of each cell's term.
+[[nodiscard]] Spectrum reflect_cells(const ReceiverBsdf& bsdf, const Directions& centers,
+                                     std::span<const std::uint32_t> radiance, const Mask& lit,
+                                     std::span<float> products);
+
 /// Directions in runs of 16 lanes: run i is [16 i, 16 i + 16), one direction for each of 16 texels.
 struct DirectionRuns {
     std::vector<float> x, y, z;

@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "cache/cells-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace relumine::HWY_NAMESPACE {
 namespace {
@@ -120,6 +122,19 @@ void evaluate_all(const ReceiverBsdf& bsdf, const Directions& w_in, const Spectr
     }
 }
 
+void reflect_all_cells(const ReceiverBsdf& bsdf, const Directions& centers,
+                       std::span<const std::uint32_t> radiance, const Mask& lit, std::span<float> products,
+                       Spectrum& out) {
+    const F f;
+    const Prepared prepared(bsdf);
+    out = cells::weighted_sum(radiance, lit, products, [&](std::size_t cell) {
+        const Spectrums s = above_horizon(
+            prepared,
+            {hn::LoadU(f, &centers.x[cell]), hn::LoadU(f, &centers.y[cell]), hn::LoadU(f, &centers.z[cell])});
+        return cells::Colors{s.r, s.g, s.b};
+    });
+}
+
 /// `radiance`: null for 1 everywhere.
 void evaluate_all_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
                         const RadianceRuns* radiance, std::size_t per_texel,
@@ -155,9 +170,17 @@ namespace relumine {
 
 HWY_EXPORT(evaluate_all);
 HWY_EXPORT(evaluate_all_tiles);
+HWY_EXPORT(reflect_all_cells);
 
 void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
     HWY_DYNAMIC_DISPATCH(evaluate_all)(bsdf, w_in, out);
+}
+
+Spectrum reflect_cells(const ReceiverBsdf& bsdf, const Directions& centers,
+                       std::span<const std::uint32_t> radiance, const Mask& lit, std::span<float> products) {
+    Spectrum sum;
+    HWY_DYNAMIC_DISPATCH(reflect_all_cells)(bsdf, centers, radiance, lit, products, sum);
+    return sum;
 }
 
 void evaluate_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points, std::size_t per_texel,

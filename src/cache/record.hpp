@@ -25,16 +25,18 @@ inline constexpr std::uint32_t max_surfel_side =
 inline constexpr std::size_t surfel_padding = 16;  // surfels may be read this far past their end
 
 /// Rectangular surfels, layer by layer from near to far; the last layer holds what was missed, at infinity.
+/// Within a layer those whose texels are all black come last.
 struct Surfels {
     float scale = 1;         // metres per unit of `corners`; infinity's are unit directions
     std::size_t count = 0;   // surfels
     std::size_t stride = 0;  // of the planes of `corners`, half floats
     std::vector<std::uint16_t>
-        corners;  // corner_planes × stride (+ padding): world-space offsets from the record
-    std::vector<TexelRect> texels;    // count (+ padding): which part of the texture the surfel carries
-    std::vector<std::uint8_t> black;  // count: whether all its texels are
+        corners;  // corner_planes × stride (+ padding): offsets from the record, in its frame
+    std::vector<std::uint8_t> missed;  // side²/8: a bit for each texel at infinity, row-major in (v, u)
+    std::vector<TexelRect> texels;     // count (+ padding): which part of the texture the surfel carries
     std::vector<std::uint32_t>
         layer_begin;  // layers + 1 entries; layer k is [layer_begin[k], layer_begin[k + 1])
+    std::vector<std::uint32_t> black_begin;  // of each layer
 
     [[nodiscard]] std::size_t layers() const { return layer_begin.size() - 1; }
     /// The first surfel at infinity.
@@ -55,8 +57,8 @@ struct Record {
     /// Memory that the record occupies.
     [[nodiscard]] std::size_t bytes() const {
         return sizeof(Record) + 4 * (radiance.capacity() + direct.capacity()) + 2 * surfels.corners.capacity()
-               + sizeof(TexelRect) * surfels.texels.capacity() + surfels.black.capacity()
-               + 4 * surfels.layer_begin.capacity();
+               + sizeof(TexelRect) * surfels.texels.capacity() + surfels.missed.capacity()
+               + 4 * (surfels.layer_begin.capacity() + surfels.black_begin.capacity());
     }
 };
 

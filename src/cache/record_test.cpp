@@ -51,7 +51,8 @@ TEST(Layers, OneDistanceIsOneLayer) {
     for (const std::uint8_t layer : sort_into_layers(texels, 8).layer_of_texel) EXPECT_EQ(layer, 0);
 }
 
-TEST(SurfelMerge, CoversEveryTexelOnceAndStaysInItsLayer) {
+/// Only surfels at infinity may carry texels of other layers.
+TEST(SurfelMerge, CoversEveryTexelOnceInItsLayer) {
     const std::vector<TexelSample> texels = random_texels(32);
     const DepthLayers layers = sort_into_layers(texels, 8);
     const Surfels surfels =
@@ -63,11 +64,39 @@ TEST(SurfelMerge, CoversEveryTexelOnceAndStaysInItsLayer) {
             EXPECT_LE(std::max(r.width, r.height), max_surfel_side);
             for (int v = r.v; v < r.v + r.height; ++v)
                 for (int u = r.u; u < r.u + r.width; ++u) {
-                    ++covered[static_cast<std::size_t>(v * 32 + u)];
-                    EXPECT_EQ(layers.layer_of_texel[static_cast<std::size_t>(v * 32 + u)], layer);
+                    const auto texel = static_cast<std::size_t>(v * 32 + u);
+                    const bool own = layers.layer_of_texel[texel] == layer;
+                    EXPECT_TRUE(own || layer + 1 == surfels.layers());
+                    covered[texel] += own ? 1 : 0;
                 }
         }
     for (const int count : covered) EXPECT_EQ(count, 1);
+}
+
+TEST(SurfelMerge, BlackSurfelsAreTheLastOfTheirLayer) {
+    std::vector<TexelSample> texels = random_texels(32);
+    for (std::size_t i = 0; i < texels.size(); i += 3) texels[i].radiance = red;
+    const Surfels surfels = merge_surfels(texels, sort_into_layers(texels, 8), {{}, frame_around({0, 1, 0})},
+                                          32, {.reuse_distance = 0.1f});
+    ASSERT_EQ(surfels.black_begin.size(), surfels.layers());
+    for (std::size_t layer = 0; layer < surfels.layers(); ++layer)
+        for (std::size_t i = surfels.layer_begin[layer]; i < surfels.layer_begin[layer + 1]; ++i) {
+            const TexelRect& r = surfels.texels[i];
+            bool black = true;
+            for (int v = r.v; v < r.v + r.height; ++v)
+                for (int u = r.u; u < r.u + r.width; ++u)
+                    black = black && is_black(texels[static_cast<std::size_t>(v * 32 + u)].radiance);
+            EXPECT_EQ(black, i >= surfels.black_begin[layer]);
+        }
+}
+
+TEST(SurfelMerge, OnlyWhatIsHitIsBlackUnderASky) {
+    const Record record = Stage({{{-50, 3, -50}, {50, 0, 0}, {0, 0, 100}, {}}}, sky).record({}, {0, 1, 0});
+    const Surfels& s = record.surfels;
+    ASSERT_GT(s.infinity_begin(), 50u);
+    for (std::size_t layer = 0; layer + 1 < s.layers(); ++layer)
+        EXPECT_EQ(s.black_begin[layer], s.layer_begin[layer]);
+    EXPECT_EQ(s.black_begin.back(), s.count);
 }
 
 TEST(SurfelMerge, MergesPlanesAndNotSteps) {
@@ -91,13 +120,6 @@ TEST(Record, TextureIsWhatRaysBringBack) {
     EXPECT_GT(std::min({reds, greens, skies}), 50u);
     EXPECT_TRUE(record.direct.empty());
     EXPECT_GT(record.bytes(), 16384u);
-}
-
-TEST(SurfelMerge, KnowsWhichSurfelsAreBlack) {
-    const Record record = Stage({{{-50, 3, -50}, {50, 0, 0}, {0, 0, 100}, {}}}, sky).record({}, {0, 1, 0});
-    const Surfels& s = record.surfels;
-    ASSERT_GT(s.infinity_begin(), 50u);
-    for (std::size_t i = 0; i < s.count; ++i) EXPECT_EQ(s.black[i] != 0, i < s.infinity_begin()) << i;
 }
 
 TEST(Record, HarmonicDistanceOfAPlaneOverhead) {

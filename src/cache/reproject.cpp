@@ -19,7 +19,7 @@ class RecordReprojector {
         const Surfels& s = record_.surfels;
         for (std::size_t layer = 0; layer < s.layers(); ++layer) {
             const bool at_infinity = layer + 1 == s.layers();
-            cover(s.layer_begin[layer], s.layer_begin[layer + 1]);
+            cover(s.layer_begin[layer], s.black_begin[layer], s.layer_begin[layer + 1], at_infinity);
             if (!at_infinity) close_behind(s.layer_begin[layer], s.layer_begin[layer + 1]);
         }
         for (std::size_t y = 0; y < mask_side; ++y)
@@ -27,27 +27,28 @@ class RecordReprojector {
     }
 
   private:
-    void cover(std::size_t begin, std::size_t end) {
+    void cover(std::size_t begin, std::size_t black_begin, std::size_t end, bool at_infinity) {
         const std::size_t count = end - begin;
         const RecordTexture texture{record_.radiance,
                                     record_.direct.empty() ? record_.radiance : record_.direct,
-                                    static_cast<std::size_t>(record_.side)};
-        const bool any = draw_surfels(std::span(out_.masks).subspan(begin, count),
-                                      {std::span(record_.surfels.texels).subspan(begin, count),
-                                       std::span(record_.surfels.black).subspan(begin, count)},
-                                      texture, {open_, out_.radiance, out_.direct});
+                                    static_cast<std::size_t>(record_.side), record_.surfels.missed};
+        const Canvas canvas{open_, out_.lit, out_.radiance, out_.direct};
+        const auto masks = std::span(out_.masks).subspan(begin, count);
+        const auto texels = std::span(record_.surfels.texels).subspan(begin, count);
+        const bool any = at_infinity ? draw_missed(masks, texels, texture, canvas)
+                                     : draw_surfels(masks, {texels, black_begin - begin}, texture, canvas);
         out_.layers += any ? 1 : 0;
     }
 
     /// What the move has opened behind this layer: farther layers must not fill it.
     void close_behind(std::size_t begin, std::size_t end) {
-        close_trails(std::span(out_.trails).subspan(begin, end - begin),
-                     std::span(out_.masks).subspan(begin, end - begin), open_, out_.unknown);
+        close_trails(std::span(out_.trails).subspan(begin, end - begin), closed_, open_, out_.unknown);
     }
 
     const Record& record_;
     Reprojection& out_;
-    Mask open_;  // neither covered nor unknown
+    Mask open_;    // neither covered nor unknown
+    Mask closed_;  // the trails of the layers so far
 };
 
 }  // namespace
@@ -64,13 +65,20 @@ Frame receiver_frame(const Frame& record_frame, Vec3 normal) {
 }
 
 void Reprojection::clear(bool with_direct) {
-    covered = unknown = Mask{};
-    radiance.assign(mask_bits + surfel_padding, 0);
-    if (with_direct)
-        direct.assign(mask_bits + surfel_padding, 0);
-    else
-        direct.clear();
+    covered = unknown = lit = Mask{};
+    radiance.resize(mask_bits + surfel_padding);
+    direct.resize(with_direct ? mask_bits + surfel_padding : 0);
     records = layers = 0;
+}
+
+void Reprojection::blacken() {
+    for (int y = 0; y < mask_side; ++y)
+        for (int x = 0; x < mask_side; ++x) {
+            if (lit.test(x, y)) continue;
+            const auto at = static_cast<std::size_t>(y * mask_side + x);
+            radiance[at] = 0;
+            if (!direct.empty()) direct[at] = 0;
+        }
 }
 
 void reproject(const Record& record, const Receiver& receiver, Reprojection& out) {
@@ -80,12 +88,17 @@ void reproject(const Record& record, const Receiver& receiver, Reprojection& out
         out.trails.resize(s.count + surfel_padding);
     }
     const bool rotated = !(receiver.frame.s == record.frame.s && receiver.frame.n == record.frame.n);
-    const Projection moved{receiver.frame, record.position - receiver.position, rotated, record.side};
-    const Projection turned{receiver.frame, {}, false, record.side};
+    const Frame turn{record.frame.to_local({receiver.frame.s}).v, record.frame.to_local({receiver.frame.t}).v,
+                     record.frame.to_local({receiver.frame.n}).v};
+    const Vec3 shift = receiver.frame.to_local({record.position - receiver.position}).v;
     const std::size_t infinity_begin = s.infinity_begin();
-    project_surfels(s, 0, infinity_begin, moved, out.masks, out.trails);
-    project_surfels(s, infinity_begin, s.count, turned, std::span(out.masks).subspan(infinity_begin),
-                    std::span(out.trails).subspan(infinity_begin));
+    project_surfels(s, 0, infinity_begin, {turn, shift, rotated, record.side}, out.masks, out.trails);
+    const auto masks = std::span(out.masks).subspan(infinity_begin),
+               trails = std::span(out.trails).subspan(infinity_begin);
+    if (rotated)
+        project_surfels(s, infinity_begin, s.count, {turn, {}, true, record.side}, masks, trails);
+    else
+        place_surfels(s, infinity_begin, s.count, record.side, masks);
     out.unknown = Mask{};
     RecordReprojector(record, out).run();
     ++out.records;

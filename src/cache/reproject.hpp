@@ -21,8 +21,9 @@ struct Receiver {
 struct Reprojection {
     Mask covered;  // bits with radiance
     Mask unknown;  // not covered, and the move from the last record may have opened a view there
+    Mask lit;      // those covered bits that may not be black
     std::vector<std::uint32_t>
-        radiance;  // mask_side² (+ padding), row-major in (y, x), RGBE; 0 where not covered
+        radiance;  // mask_side² (+ padding), row-major in (y, x), RGBE; where not lit whatever was there
     std::vector<std::uint32_t>
         direct;       // the part straight from lights; empty where records do not keep it apart
     int records = 0;  // used so far
@@ -32,6 +33,8 @@ struct Reprojection {
     [[nodiscard]] int gaps() const { return mask_bits - covered.count(); }
 
     void clear(bool with_direct);
+    /// Writes 0 where no bit is lit, for those who look at the radiance itself.
+    void blacken();
 
     std::vector<BitRect> masks, trails;  // scratch
 };

@@ -204,6 +204,7 @@ TEST(GapFill, UnderLightThatIsOneEverywhereTheEstimateIsTheAlbedo) {
     tabulate(glossy(), table);
     Reprojection ones;
     ones.clear(false);
+    ones.lit = ~Mask{};
     std::fill_n(ones.radiance.begin(), mask_bits, pack_rgbe(one));
     EXPECT_EQ(shade(seen, table).total, shade(ones, table).total);
 }

@@ -62,38 +62,6 @@ const DirectionTable& fine_directions() {
     return table;
 }
 
-/// How much the BSDF curves within a cell that is not at the border: |second differences| along both axes.
-float curvature(const float* f) {
-    const float center = 2 * f[0];
-    return std::abs(f[-1] - center + f[1]) + std::abs(f[-cell_side] - center + f[cell_side]);
-}
-
-/// Column by column, so that the sums do not wait for each other.
-float mean_of_cells(const std::vector<float>& f) {
-    std::array<float, cell_side> columns{};
-    for (std::size_t y = 0; y < cell_side; ++y)
-        for (std::size_t x = 0; x < cell_side; ++x) columns[x] += f[y * cell_side + x];
-    float sum = 0;
-    for (const float column : columns) sum += column;
-    return sum / static_cast<float>(cell_count);
-}
-
-/// Cells whose centre does not stand for their mean: its error is about a 24th of the curvature.
-void find_fine_cells(BsdfTable& table) {
-    const float noticeable = mean_of_cells(table.g);
-    std::array<float, cell_side> excess{};  // of a row's curvatures over what is allowed
-    for (std::size_t y = 1; y + 1 < cell_side; ++y) {
-        const float* row = &table.g[y * cell_side];
-        int found = 0;
-        for (std::size_t x = 1; x + 1 < cell_side; ++x) {
-            excess[x] = curvature(row + x) - greatest_curvature * (row[x] + noticeable);
-            found |= excess[x] > 0 ? 1 : 0;
-        }
-        for (std::size_t x = 1; found != 0 && x + 1 < cell_side; ++x)
-            if (excess[x] > 0) table.fine_cells.push_back(static_cast<std::uint32_t>(y * cell_side + x));
-    }
-}
-
 /// The fine cells' directions one after the other, so that one call of the kernel evaluates them all.
 Directions gather_fine_directions(BsdfTable& table, std::size_t count) {
     const DirectionTable& all = fine_directions();
@@ -123,22 +91,26 @@ void refine(const ReceiverBsdf& bsdf, BsdfTable& table) {
     for (const std::uint32_t cell : table.fine_cells) table.r[cell] = table.g[cell] = table.b[cell] = 0;
 }
 
-Spectrum fine_cell_sum(const std::vector<std::uint32_t>& radiance, const BsdfTable& table, std::size_t fine) {
+bool is_wide(const ReceiverBsdf& bsdf) { return !bsdf.specular || bsdf.ggx.alpha >= narrow_lobe; }
+
+Spectrum fine_cell_sum(const std::vector<std::uint32_t>& radiance, const Mask& lit, const BsdfTable& table,
+                       std::size_t fine) {
     const std::uint32_t cell = table.fine_cells[fine];
-    const std::size_t first_bit = cell / cell_side * 2 * mask_side + cell % cell_side * 2;
+    const std::size_t first_x = cell % cell_side * 2, first_y = cell / cell_side * 2;
     Spectrum sum;
     for (std::size_t bit = 0; bit < 4; ++bit) {
-        const std::uint32_t packed = radiance[first_bit + bit / 2 * mask_side + bit % 2];
-        if (packed != 0) sum += unpack_rgbe(packed) * table.fine_bits[4 * fine + bit];
+        const std::size_t x = first_x + bit % 2, y = first_y + bit / 2;
+        if (lit.test(static_cast<int>(x), static_cast<int>(y)))
+            sum += unpack_rgbe(radiance[y * mask_side + x]) * table.fine_bits[4 * fine + bit];
     }
     return sum;
 }
 
-Spectrum reflected(const std::vector<std::uint32_t>& radiance, const BsdfTable& table,
+Spectrum reflected(const std::vector<std::uint32_t>& radiance, const Mask& lit, const BsdfTable& table,
                    std::span<float> products) {
-    Spectrum sum = sum_cells(radiance, {table.r, table.g, table.b}, products);
+    Spectrum sum = sum_cells(radiance, lit, {table.r, table.g, table.b}, products);
     for (std::size_t fine = 0; fine < table.fine_cells.size(); ++fine) {
-        const Spectrum share = fine_cell_sum(radiance, table, fine);
+        const Spectrum share = fine_cell_sum(radiance, lit, table, fine);
         if (!products.empty()) products[table.fine_cells[fine]] = luminance(share);
         sum += share;
     }
@@ -154,16 +126,30 @@ void tabulate(const ReceiverBsdf& bsdf, BsdfTable& table) {
     table.fine_cells.clear();
     table.fine_bits.clear();
     evaluate(bsdf, cell_centers().span(0, cell_count), {table.r, table.g, table.b});
-    if (!bsdf.specular || bsdf.ggx.alpha >= narrow_lobe) return;
-    find_fine_cells(table);
+    if (is_wide(bsdf)) return;
+    // A cell's centre does not stand for its mean by about a 24th of the curvature.
+    find_curved_cells(table.g, greatest_curvature, table.fine_cells);
     refine(bsdf, table);
 }
 
 ReflectedRadiance shade(const Reprojection& incident, const BsdfTable& table, std::span<float> products) {
-    const Spectrum total = reflected(incident.radiance, table, products) * bit_solid_angle;
+    const Spectrum total = reflected(incident.radiance, incident.lit, table, products) * bit_solid_angle;
     for (float& product : products) product *= bit_solid_angle;
     if (incident.direct.empty()) return {total, total};
-    return {total, reflected(incident.direct, table, {}) * bit_solid_angle};
+    return {total, reflected(incident.direct, incident.lit, table, {}) * bit_solid_angle};
+}
+
+ReflectedRadiance shade(const Reprojection& incident, const ReceiverBsdf& bsdf, BsdfTable& scratch,
+                        std::span<float> products) {
+    if (!is_wide(bsdf) || !incident.direct.empty()) {
+        tabulate(bsdf, scratch);
+        return shade(incident, scratch, products);
+    }
+    const Spectrum sum =
+        reflect_cells(bsdf, cell_centers().span(0, cell_count), incident.radiance, incident.lit, products)
+        * bit_solid_angle;
+    for (float& product : products) product *= bit_solid_angle;
+    return {sum, sum};
 }
 
 }  // namespace relumine

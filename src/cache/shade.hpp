@@ -33,4 +33,9 @@ struct ReflectedRadiance {
 [[nodiscard]] ReflectedRadiance shade(const Reprojection& incident, const BsdfTable& table,
                                       std::span<float> products = {});
 
+/// The same without a table where one would serve once: lobes that are wide need no fine cells. `scratch` is
+/// overwritten.
+[[nodiscard]] ReflectedRadiance shade(const Reprojection& incident, const ReceiverBsdf& bsdf,
+                                      BsdfTable& scratch, std::span<float> products = {});
+
 }  // namespace relumine

@@ -189,9 +189,8 @@ class CachedGather final : public Integrator {
     ReflectedRadiance shade_square(const GBufferPixel& pixel, const Receiver& receiver, Workspace& w,
                                    Tile& tile) const {
         const StepTimer timer(tile.cache, CacheStep::shade);
-        tabulate(*receiver_bsdf(pixel.point->vertex, receiver.frame), w.bsdf);
         if (rays_.product > 0) w.products.resize(cell_count);
-        return shade(w.incident, w.bsdf, w.products);
+        return shade(w.incident, *receiver_bsdf(pixel.point->vertex, receiver.frame), w.bsdf, w.products);
     }
 
     const Transport& transport_;

@@ -20,7 +20,8 @@ SceneData small_scene() {
     scene.images = {{1, 1, {255, 255, 255, 255}, {}}};
     scene.point_lights = {{{0, 0, 1}, Spectrum{1}}};
     scene.environment = Environment{1, 1, {Spectrum{1}}, 0};
-    scene.cameras = {{"main", {}, false, 0.7, 1}};
+    scene.cameras.resize(1);
+    scene.cameras[0].name = "main";
     return scene;
 }
 
