@@ -4,7 +4,7 @@
 //
 // Surfaces are covered by elements, one for each side of what a cubic cell holds of them. An element traces
 // rays once and keeps the elements that they meet as links, with the exact albedo there; iterations over the
-// links then give all bounces without rays. After Keller's instant radiosity and the point-based methods of
+// links then give all bounces without rays. In the spirit of the point-based methods of
 // [Christensen08]; cells, links and interpolation are our own.
 #pragma once
 
