@@ -10,7 +10,7 @@ namespace relumine {
 namespace {
 
 /// Places along each side of the full frame from which the field is begun.
-int seeds_along(const View& view) { return std::clamp(std::max(view.width, view.height) / 8, 8, 40); }
+int seeds_along(const View& view) { return std::clamp(std::max(view.width, view.height) / 4, 8, 40); }
 
 /// A camera sample in the middle of one of the frame's parts.
 CameraSample seed_sample(const View& view, const Tracer& tracer, int column, int row) {

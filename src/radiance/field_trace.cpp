@@ -208,7 +208,7 @@ void center(const Transport& t, const FieldCells& cells, FieldElement& e, RayCou
 
 std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id,
                                      std::uint64_t seed, RayCounts& rays) {
-    constexpr std::uint32_t tries = 16;
+    const std::uint32_t tries = cells.elements()[id].coarse ? 32 : 16;
     constexpr float reach = 1.42f;  // of a square that contains the cell's section with any plane
     const FieldElement& e = cells.elements()[id];
     const Frame frame = frame_around(e.normal);

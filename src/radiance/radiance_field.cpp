@@ -51,11 +51,16 @@ class FieldBuilder {
         : t_(t), seeds_(seeds), settings_(settings), counts_(rays) {}
 
     FieldCells run(FieldFigures& figures, BrightCones& cones, float& mean_radiance) {
-        const std::vector<Landing> first = seed_landings(0);
-        FieldCells cells(scale_of(first));
+        std::vector<Landing> seen;
+        for (std::uint32_t round = 0; round < seed_rounds; ++round) {
+            const std::vector<Landing> more = seed_landings(round);
+            seen.insert(seen.end(), more.begin(), more.end());
+        }
+        FieldCells cells(scale_of(seen));
         cells_ = &cells;
-        for (std::uint32_t round = 0; round < seed_rounds && !stopped(); ++round) {
-            add(round == 0 ? first : seed_landings(round));
+        // All cells of one size stand before links are made to them: coarse ones only guess where light ends.
+        for (int octave = 0; octave <= settings_.finest && !stopped(); ++octave) {
+            add(seen);
             close();
         }
         while (links_.first.size() <= cells.elements().size()) links_.end_element();  // a stopped build
