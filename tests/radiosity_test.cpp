@@ -3,6 +3,8 @@
 // `path`.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "integrators/light_source.hpp"
 #include "render_setup.hpp"
 #include "tests/render_support.hpp"
@@ -109,6 +111,80 @@ TEST_P(Rooms, TheMeanIsThatOfPath) {
     gather.gather_rays = 1024;
     gather.light_samples = 256;
     EXPECT_NEAR(mean_of(render(scene, gather)) / mean_of(render(scene, path)), 1, 0.006);
+}
+
+/// A dark room under a point light at (0, 2.9, 0), and what stands in it.
+Scene under_a_lamp(const std::function<void(SceneBuilder&, std::size_t)>& furnish) {
+    SceneBuilder builder;
+    const std::size_t dark = builder.add_material(matte(0.02f));
+    add_room(builder, dark, {-2, 0, -2}, {2, 3, 2});
+    furnish(builder, dark);
+    builder.add_light(PointLightDescription{{0, 2.9f, 0}, {10, 10, 10}});
+    builder.add_camera(camera_at(0, 1, 1.9));
+    return builder.build();
+}
+
+/// The field of straight light there, begun from places all over the room.
+RadianceField field_of(const Scene& scene, FieldSettings field) {
+    const RenderSettings settings = small("gather");
+    RenderSetup setup(scene.data(), settings, find_framing(scene.data(), settings), [](const char*) {});
+    field.bounces = 0;
+    std::vector<FieldSeed> seeds;
+    for (int i = 0; i < 400; ++i)
+        seeds.push_back(
+            {{-1.9f + 0.2f * static_cast<float>(i % 20), 1.5f, -1.9f + 0.2f * static_cast<float>(i / 20)},
+             {0, i % 2 == 0 ? 1.0f : -1.0f, 0},
+             1e-5f});
+    RayCounts rays;
+    return {setup.transport, seeds, field, rays};
+}
+
+double lamp_on(float x, float y, float z) {  // W·m⁻² on a plane that faces up
+    const double height = 2.9 - y, distance2 = x * x + height * height + z * z;
+    return 10 * height / (distance2 * std::sqrt(distance2));
+}
+
+/// 12 mm above a floor that it shades: cells of the floor are neighbours in height, and dark.
+TEST(Radiosity, ARugIsAsBrightAsItsOwnLight) {
+    const Scene scene = under_a_lamp([](SceneBuilder& builder, std::size_t dark) {
+        for (const float y : {0.012f, 0.004f})
+            add_quad(builder, dark, {-1, y, -1}, {1, y, -1}, {1, y, 1}, {-1, y, 1});
+    });
+    const RadianceField field = field_of(scene, {});
+    double error = 0, sum = 0;
+    for (float x = -0.97f; x < 1; x += 0.0637f)
+        for (float z = -0.97f; z < 1; z += 0.0593f) {
+            const auto found = field.irradiance({x, 0.012f, z}, {0, 1, 0}, {0, 1, 0});
+            ASSERT_TRUE(found.has_value());
+            error += std::abs(double{found->g} - lamp_on(x, 0.012f, z));
+            sum += lamp_on(x, 0.012f, z);
+        }
+    EXPECT_LT(error / sum, 0.02);  // tents on places that rays have drawn: 1.3 %
+}
+
+/// A plate half way up; the edge of its shadow on the floor is found by cells that shrink around it.
+TEST(Radiosity, ShadowsHaveEdges) {
+    const Scene scene = under_a_lamp([](SceneBuilder& builder, std::size_t dark) {
+        add_quad(builder, dark, {-0.43f, 1.45f, -0.43f}, {0.43f, 1.45f, -0.43f}, {0.43f, 1.45f, 0.43f},
+                 {-0.43f, 1.45f, 0.43f});
+    });
+    const auto error = [&](const FieldSettings& settings) {
+        const RadianceField field = field_of(scene, settings);
+        double off = 0, sum = 0;
+        for (float x = 0.4f; x < 1.3f; x += 0.0071f)
+            for (float z = -0.6f; z < 0.6f; z += 0.0613f) {
+                const double light = x < 0.86f ? 0 : lamp_on(x, 0, z);
+                off += std::abs(
+                    double{field.irradiance({x, 0, z}, {0, 1, 0}, {0, 1, 0}).value_or(Spectrum{}).g} - light);
+                sum += light;
+            }
+        return off / sum;
+    };
+    FieldSettings blunt;
+    blunt.edge_above = 1e9f;
+    const double sharp_error = error({}), blunt_error = error(blunt);
+    EXPECT_LT(sharp_error, 0.04);
+    EXPECT_GT(blunt_error, 1.8 * sharp_error);
 }
 
 /// A closed room cut in two by a wall of 1 cm; the light is on the left.

@@ -21,6 +21,11 @@ struct IrradianceVector {
         y += amount * direction.y;
         z += amount * direction.z;
     }
+    void add(const IrradianceVector& other, float times) {
+        x += other.x * times;
+        y += other.y * times;
+        z += other.z * times;
+    }
 };
 
 using ElementId = std::uint32_t;

@@ -10,7 +10,7 @@ namespace relumine {
 namespace {
 
 constexpr float least_cosine = 0.9f;
-constexpr float most_height = 0.25f;  // off each other's planes, of the size
+constexpr float most_height = 0.25f;  // off each other's planes, of the smaller one's size
 constexpr float reach = 2;            // of the larger one's size
 constexpr float lift = 0.05f;         // of the ray that asks for the way, of the size
 constexpr float own_weight = 1e-4f;   // so that there is always some
@@ -23,13 +23,17 @@ struct Candidate {
     ElementId id;
 };
 
+/// Whether smaller elements know better than `e` what `home` should be blended with.
+bool replaced(const FieldElement& e, const FieldElement& home) {
+    return e.divided || (e.coarse && !home.coarse);
+}
+
 /// Whether two pieces of surface, though not equally large, are parts of one.
 bool belong_together(const FieldElement& a, const FieldElement& b) {
     const Vec3 way = b.position - a.position;
-    const float size = std::max(a.size, b.size);
-    return dot(a.normal, b.normal) >= least_cosine && length_squared(way) <= sqr(reach * size)
-           && std::abs(dot(way, a.normal)) <= most_height * size
-           && std::abs(dot(way, b.normal)) <= most_height * size;
+    const float larger = std::max(a.size, b.size), height = most_height * std::min(a.size, b.size);
+    return dot(a.normal, b.normal) >= least_cosine && length_squared(way) <= sqr(reach * larger)
+           && std::abs(dot(way, a.normal)) <= height && std::abs(dot(way, b.normal)) <= height;
 }
 
 bool sees(const Transport& t, const FieldElement& a, const FieldElement& b, RayCounts& rays) {
@@ -47,8 +51,9 @@ FieldNeighbors::List find_neighbors(const Transport& t, const FieldCells& cells,
     std::vector<Candidate> candidates;
     for (int level = e.level - 2; level <= e.level + 2; ++level)
         cells.around(e.position, level, [&](ElementId other) {
-            if (other == id || !belong_together(e, cells.elements()[other])) return;
-            candidates.push_back({length_squared(cells.elements()[other].position - e.position), other});
+            const FieldElement& o = cells.elements()[other];
+            if (other != id && !replaced(o, e) && belong_together(e, o))
+                candidates.push_back({length_squared(o.position - e.position), other});
         });
     std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
         return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : a.id < b.id;
@@ -63,13 +68,15 @@ FieldNeighbors::List find_neighbors(const Transport& t, const FieldCells& cells,
     return list;
 }
 
-/// 1 at the element, 0 from its size on along any axis of the world; a partition of unity where elements lie
-/// on a grid.
-float tent(const FieldElement& e, Vec3 position) {
+/// ½ at the border of the element's cell, 1 and 0 half a `ramp` inside and outside, along every axis of the
+/// world. With cells of one size, and ramps as wide as they are, a tent and a partition of unity.
+float weight_at(const FieldElement& e, Vec3 position, float ramp) {
     Vec3 way = position - e.position;
-    way = (way - e.normal * dot(way, e.normal)) / e.size;
-    const float x = 1 - std::abs(way.x), y = 1 - std::abs(way.y), z = 1 - std::abs(way.z);
-    return x > 0 && y > 0 && z > 0 ? x * y * z : 0.0f;
+    way = way - e.normal * dot(way, e.normal);
+    const auto axis = [&](float x) {
+        return std::clamp((0.5f * (e.size + ramp) - std::abs(x)) / ramp, 0.0f, 1.0f);
+    };
+    return axis(way.x) * axis(way.y) * axis(way.z);
 }
 
 }  // namespace
@@ -97,11 +104,14 @@ Spectrum FieldNeighbors::irradiance(const FieldCells& cells, ElementId home, Vec
         // What the element's vector says of directions along its plane; light from everywhere knows no tilt.
         tilted += (e.irradiance.towards(normal) + measured * (1 - dot(normal, e.normal))) * weight;
     };
-    add(cells.elements()[home], tent(cells.elements()[home], position) + own_weight);
+    const FieldElement& own = cells.elements()[home];
+    add(own, weight_at(own, position, own.size) + own_weight);
     for (const ElementId id : lists_[home]) {
         if (id == no_element) break;
-        const float weight = tent(cells.elements()[id], position);
-        if (weight > 0) add(cells.elements()[id], weight);
+        const FieldElement& e = cells.elements()[id];
+        // Where large cells border on small ones, light reaches as far into these as darkness out of them.
+        const float weight = weight_at(e, position, std::min(e.size, own.size));
+        if (weight > 0) add(e, weight);
     }
     const auto limited = [&](float x, float measured) {
         return std::clamp(x, 0.0f, most_tilted * std::max(measured, 0.0f));

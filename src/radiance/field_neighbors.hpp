@@ -21,8 +21,8 @@ class FieldNeighbors {
     FieldNeighbors() = default;
     FieldNeighbors(const Transport& t, const FieldCells& cells, int threads, RayCounts& rays);
 
-    /// Irradiance on a surface of this (shading) normal at a point for which `home` stands, by tents as large
-    /// as the elements.
+    /// Irradiance on a surface of this (shading) normal at a point for which `home` stands, by weights
+    /// that fall over the borders of their cells.
     [[nodiscard]] Spectrum irradiance(const FieldCells& cells, ElementId home, Vec3 position,
                                       Vec3 normal) const;
 

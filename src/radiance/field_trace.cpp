@@ -16,42 +16,6 @@ constexpr float least_tilt_cosine = 0.2f;
 /// Nearest distance that counts, metres: a bound for the logarithm.
 constexpr float least_distance = 1e-6f;
 
-/// Height over the surface of rays that explore it, of the cell's size.
-constexpr float lift = 0.05f;
-
-/// Where straight down from `above` (not farther than `depth`) the element's surface lies.
-std::optional<SurfacePoint> project(const Transport& t, const FieldElement& e, Vec3 above, float depth,
-                                    RayCounts& rays) {
-    constexpr float least_cosine = 0.9f;
-    rays.add(RayPurpose::field);
-    const Ray down{above, {-e.normal}, depth, 0};
-    const Hit hit = t.tracer.closest_hit(down);
-    if (!hit) return {};
-    SurfacePoint p = surface_point(t.scene, hit, {e.normal});
-    if (dot(p.geometric_normal, e.normal) < least_cosine) return {};
-    return p;
-}
-
-bool sees(const Transport& t, Vec3 from, Vec3 to, RayCounts& rays) {
-    const Vec3 way = to - from;
-    const float distance = length(way);
-    if (!(distance > 0)) return true;
-    rays.add(RayPurpose::field);
-    return !t.tracer.occluded({from, {way / distance}, distance, 0});
-}
-
-/// The point of the element's surface that lies below or above `target` along its normal, if it is in the
-/// cell and can be seen from the element.
-std::optional<SurfacePoint> surface_near(const Transport& t, const FieldCells& cells, const FieldElement& e,
-                                         Vec3 target, RayCounts& rays) {
-    const Vec3 up = e.normal * (lift * e.size + e.offset);
-    const Vec3 across = target - e.position - e.normal * dot(target - e.position, e.normal);
-    if (!sees(t, e.position + up, e.position + across + up, rays)) return {};
-    auto p = project(t, e, e.position + across + up, 4 * lift * e.size + 2 * e.offset, rays);
-    if (!p || !cells.in_cell_of(e, p->position)) return {};
-    return p;
-}
-
 Spectrum first_emission(const Transport& t, const PathState& path) {
     if (!path.hit) return t.lights.environment_radiance(path.ray.direction);
     const Mesh& mesh = t.scene.meshes[index(t.scene.instances[path.hit.instance].mesh)];
@@ -81,6 +45,45 @@ Vec3 turned(Vec3 direction, Vec3 from, Vec3 normal) {
     const float sine = std::sqrt(std::max(0.0f, 1 - sqr(cosine))), length_along = length(along);
     return normal * cosine + (length_along > 1e-6f ? along * (sine / length_along) : Vec3{});
 }
+
+/// Lobes take part in what is left of the bounces.
+LobeWalk lobe_walk(const FieldSettings& settings) {
+    constexpr std::uint32_t most = unlimited_depth - 1;
+    return {.max_depth = std::min(settings.bounces, most) + 1};
+}
+
+/// How far the means of samples differ between an element's points, beyond what samples at one point do.
+class Contrast {
+  public:
+    explicit Contrast(std::size_t points) : points_(points) {}
+    void add(std::size_t point, float x) {
+        points_[point].count += 1;
+        points_[point].sum += x;
+        points_[point].squares += sqr(x);
+    }
+
+    /// The standard deviation between points, what noise accounts for taken away; 0 where that is all.
+    [[nodiscard]] float over_noise() const {
+        float means = 0, squares = 0, noise = 0, count = 0;
+        for (const Point& p : points_) {
+            if (p.count < 2) continue;
+            const float mean = p.sum / p.count;
+            means += mean;
+            squares += sqr(mean);
+            noise += std::max(0.0f, p.squares / p.count - sqr(mean)) / (p.count - 1);
+            count += 1;
+        }
+        if (count < 2) return 0;
+        const float between = squares / count - sqr(means / count);
+        return std::sqrt(std::max(0.0f, between - noise / count));
+    }
+
+  private:
+    struct Point {
+        float count = 0, sum = 0, squares = 0;
+    };
+    std::vector<Point> points_;
+};
 
 class ElementTracer {
   public:
@@ -121,20 +124,26 @@ class ElementTracer {
         PathState path{ray, hit, 1, 1, Spectrum{1}, 1, 0, false, static_cast<bool>(hit)};
         tint(t_, path);
         const Vec3 direction = turned(ray.direction.v, start.normal, normal_);
-        Spectrum found = path.throughput * first_emission(t_, path);
-        if (!is_black(found)) found *= share_of_light(start, path);
+        Spectrum emission = path.throughput * first_emission(t_, path), found;
+        if (!is_black(emission)) emission *= share_of_light(start, path);
         if (hit) {
             log_distances_ += std::log(std::max(hit.t, least_distance));
             ++seen_;
-            walk_lobes(t_, path, {}, stream, found, counts_, [&](const DiffuseVertex& at) {
+            walk_lobes(t_, path, lobe_walk(settings_), stream, found, counts_, [&](const DiffuseVertex& at) {
                 const SurfacePoint& p = at.vertex.point;
                 view_.landings.push_back({p.position, p.geometric_normal, p.offset, hit.t, at.weight,
                                           direction, static_cast<std::uint16_t>(stream.index)});
                 return true;
             });
         }
-        if (is_finite(found))
-            add_arriving(view_.light, normal_, direction, found * (pi / static_cast<float>(settings_.rays)));
+        if (!is_finite(emission + found)) return;
+        const float share = pi / static_cast<float>(settings_.rays);
+        add_arriving(view_.light, normal_, direction, (emission + found) * share);
+        if (luminance(found) > strongest_) {
+            strongest_ = luminance(found);
+            view_.strongest = {};
+            add_arriving(view_.strongest, normal_, direction, found * share);
+        }
     }
 
     /// The balance heuristic against light samples.
@@ -146,30 +155,35 @@ class ElementTracer {
 
     void sample_lights() {
         if (t_.lights.empty()) return;
+        Contrast contrast(points_.size());
         for (int i = 0; i < settings_.light_samples; ++i) {
             const SampleStream stream =
                 element_stream(hash(settings_.seed, 0x6c6967687473), id_, static_cast<std::uint32_t>(i),
                                settings_.light_samples);
-            sample_light(points_[point_of(points_, i, settings_.light_samples)], stream);
+            const std::size_t point = point_of(points_, i, settings_.light_samples);
+            contrast.add(point, luminance(sample_light(points_[point], stream)));
         }
+        view_.contrast = contrast.over_noise() * static_cast<float>(settings_.light_samples);
     }
 
-    void sample_light(const StartPoint& start, const SampleStream& stream) {
+    /// Adds a sample's share of the irradiance, and returns it.
+    Spectrum sample_light(const StartPoint& start, const SampleStream& stream) {
         const auto light = t_.lights.sample(start.position, stream.next2(Dim::light_point));
-        if (!light || !(light->pdf > 0)) return;
+        if (!light || !(light->pdf > 0)) return {};
         const float cosine = dot(light->w_in.v, start.normal);
-        if (cosine <= 0) return;
+        if (cosine <= 0) return {};
         SurfacePoint p;
         p.position = start.position;
         p.geometric_normal = start.normal;
         p.offset = start.offset;
         const Spectrum passed = passed_light(t_, p, *light, stream.bits(Dim::opacity, 1), counts_);
-        if (is_black(passed)) return;
+        if (is_black(passed)) return {};
         const float here = static_cast<float>(settings_.light_samples) * light->pdf;
         const float density =
             light->delta ? here : here + static_cast<float>(settings_.rays) * inv_pi * cosine;
-        add_arriving(view_.light, normal_, turned(light->w_in.v, start.normal, normal_),
-                     passed * light->radiance * (cosine / density));
+        const Spectrum irradiance = passed * light->radiance * (cosine / density);
+        add_arriving(view_.light, normal_, turned(light->w_in.v, start.normal, normal_), irradiance);
+        return irradiance;
     }
 
     const Transport& t_;
@@ -179,6 +193,7 @@ class ElementTracer {
     const FieldSettings& settings_;
     RayCounts& counts_;
     ElementView view_;
+    float strongest_ = 0;  // radiance of view_.strongest
     float log_distances_ = 0;
     int seen_ = 0;
 };
@@ -193,36 +208,6 @@ void add_arriving(IrradianceVector& vector, Vec3 normal, Vec3 direction, Spectru
     const float cosine = dot(direction, normal);
     const Vec3 along = direction - normal * cosine;
     vector.add(normal + along / std::max(cosine, least_tilt_cosine), irradiance);
-}
-
-void center(const Transport& t, const FieldCells& cells, FieldElement& e, RayCounts& rays) {
-    const Vec3 middle = cells.middle_of(e);
-    for (const float part : {1.0f, 0.6f, 0.3f}) {
-        const auto p = surface_near(t, cells, e, lerp(e.position, middle, part), rays);
-        if (!p) continue;
-        e.position = p->position;
-        e.offset = p->offset;
-        return;
-    }
-}
-
-std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id,
-                                     std::uint64_t seed, RayCounts& rays) {
-    const std::uint32_t tries = cells.elements()[id].coarse ? 32 : 16;
-    constexpr float reach = 1.42f;  // of a square that contains the cell's section with any plane
-    const FieldElement& e = cells.elements()[id];
-    const Frame frame = frame_around(e.normal);
-    const Vec3 middle = cells.middle_of(e);
-    std::vector<StartPoint> points;
-    for (std::uint32_t i = 0; i < tries; ++i) {
-        const Point2 u =
-            SampleStream{hash(seed, id, 0x706f696e7473), i, tries, PointSet::sobol}.next2(Dim::pixel);
-        const Vec3 target = middle + (frame.s * (u.x - 0.5f) + frame.t * (u.y - 0.5f)) * (reach * e.size);
-        if (const auto p = surface_near(t, cells, e, target, rays))
-            points.push_back({p->position, p->geometric_normal, p->offset});
-    }
-    if (points.empty()) points.push_back({e.position, e.normal, e.offset});
-    return points;
 }
 
 ElementView trace_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points, ElementId id,
@@ -295,12 +280,13 @@ class Guide {
         Spectrum found;  // the rays of trace_element bring that
         PathState path{ray, hit, 1, 1, Spectrum{1}, 1, 0, false, true};
         tint(t_, path);
-        walk_lobes(t_, path, {}, stream_of(i), found, counts_, [&](const DiffuseVertex& at) {
-            const SurfacePoint& s = at.vertex.point;
-            view_.landings.push_back({s.position, s.geometric_normal, s.offset, hit.t, at.weight * weight,
-                                      direction, static_cast<std::uint16_t>(settings_.rays + i)});
-            return true;
-        });
+        walk_lobes(
+            t_, path, lobe_walk(settings_), stream_of(i), found, counts_, [&](const DiffuseVertex& at) {
+                const SurfacePoint& s = at.vertex.point;
+                view_.landings.push_back({s.position, s.geometric_normal, s.offset, hit.t, at.weight * weight,
+                                          direction, static_cast<std::uint16_t>(settings_.rays + i)});
+                return true;
+            });
     }
 
     const Transport& t_;

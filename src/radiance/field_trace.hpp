@@ -4,7 +4,7 @@
 
 #include "base/ray_counts.hpp"
 #include "radiance/bright_cones.hpp"
-#include "radiance/field_cells.hpp"
+#include "radiance/field_points.hpp"
 #include "radiance/path.hpp"
 #include "radiance/radiance_field.hpp"
 
@@ -24,7 +24,9 @@ struct Landing {
 struct ElementView {
     std::vector<Landing> landings;  // in order of rays
     IrradianceVector light;         // what arrives straight from lights or through lobes alone
+    IrradianceVector strongest;     // part of it: the most that a single ray found along lobes
     float distance = infinity;      // metres, the geometric mean of what is seen
+    float contrast = 0;  // W·m⁻²: how far what the points receive straight from lights differs, over noise
 };
 
 /// The random numbers of a ray.
@@ -32,19 +34,6 @@ struct ElementView {
 
 /// Adds light from `direction` that gives `irradiance` on the surface of this normal.
 void add_arriving(IrradianceVector& vector, Vec3 normal, Vec3 direction, Spectrum irradiance);
-
-/// A place where rays of an element start.
-struct StartPoint {
-    Vec3 position, normal;
-    float offset = 0;
-};
-
-/// Points spread over what an element's cell holds of its surface; at least the element's own.
-[[nodiscard]] std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id,
-                                                   std::uint64_t seed, RayCounts& rays);
-
-/// Moves an element towards the middle of what its cell holds of the surface, as far as it sees the way.
-void center(const Transport& t, const FieldCells& cells, FieldElement& element, RayCounts& rays);
 
 /// Traces rays over the hemispheres of `points` and samples the lights from there, for an element of this
 /// normal.

@@ -8,6 +8,10 @@
 namespace relumine {
 namespace {
 
+/// Light that is found along lobes by chance counts for no more than this, times the mean that surfaces
+/// reflect: one ray of a map stands for many, and would be seen as a dot.
+constexpr float most_found = 64;
+
 /// Most surfaces emit nothing: not worth a vertex.
 bool may_emit(const Transport& t, const Hit& hit) {
     const Mesh& mesh = t.scene.meshes[index(t.scene.instances[hit.instance].mesh)];
@@ -31,7 +35,8 @@ Spectrum reflected_field(const IncidentRadiance& source, const PathState& path, 
         if (irradiance) known += at.weight * *irradiance * inv_pi;
         return irradiance.has_value();
     });
-    return known + found;
+    const float most = most_found * source.field->mean_radiance(), brightness = luminance(found);
+    return known + (brightness > most ? found * (most / brightness) : found);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // Building a radiance field, generation by generation, and asking it.
 #include "radiance/radiance_field.hpp"
 
+#include <array>
+#include <cmath>
 #include <mutex>
 
 #include "base/executor.hpp"
@@ -11,13 +13,15 @@
 namespace relumine {
 namespace {
 
-constexpr std::uint32_t seed_rays = 16;   // that a seed traces each time
+constexpr std::uint32_t seed_rays = 64;   // that a seed traces each time
 constexpr std::uint32_t seed_rounds = 4;  // later ones find what cells were divided into
 constexpr std::size_t generation = 1024;  // elements whose rays are traced before their links are made
 
-constexpr float bright_factor = 4;          // radiosity of bright elements over the mean
-constexpr float least_bright_share = 0.1f;  // of all power, that is worth sampling apart
-constexpr float unknown_albedo = 0.5f;      // of elements that no ray has met
+constexpr double most_by_chance = 2;  // a ray's find along lobes, over the mean light of elements
+
+constexpr std::array bright_factors{4.0, 16.0, 64.0, 256.0};  // radiosity of bright elements over the mean
+constexpr double least_bright_noise = 0.02;                   // of all light, that is worth sampling apart
+constexpr float unknown_albedo = 0.5f;                        // of elements that no ray has met
 
 float median(std::vector<float>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -61,9 +65,11 @@ class FieldBuilder {
         // All cells of one size stand before links are made to them: coarse ones only guess where light ends.
         for (int octave = 0; octave <= settings_.finest && !stopped(); ++octave) {
             add(seen);
+            add_edges();
             close();
         }
         while (links_.first.size() <= cells.elements().size()) links_.end_element();  // a stopped build
+        limit_strongest();
         figures.iterations = reflect();
         find_bright();
         if (!cones_.empty() && settings_.guided_rays > 0 && !stopped()) {
@@ -102,6 +108,7 @@ class FieldBuilder {
         FieldSettings few = settings_;
         few.rays = seed_rays;
         few.light_samples = 0;
+        few.bounces = unlimited_depth;
         few.seed = hash(settings_.seed, 0x73656564, round);
         in_parallel(seeds_.size(), [&](std::size_t i, RayCounts& counts) {
             if (stopped()) return;
@@ -129,23 +136,44 @@ class FieldBuilder {
 
     /// Where the camera's gather rays land, cells are fine.
     void add(const std::vector<Landing>& landings) {
-        for (const Landing& l : landings)
-            if (!full()) (void)cells_->find_or_make_fine(l.position, l.normal, l.offset);
+        for (const Landing& l : landings) {
+            const ElementId id = full() ? cells_->find(l.position, l.normal)
+                                        : cells_->find_or_make_fine(l.position, l.normal, l.offset);
+            if (id != no_element && id >= traced_) met_.offer(id, {l.position, l.normal, l.offset});
+        }
+    }
+
+    std::vector<StartPoint> points_of(ElementId id, RayCounts& counts) const {
+        return start_points(t_, *cells_, id, met_.of(id), settings_.seed, counts);
+    }
+
+    /// Gives all of what an element with an edge of light stands for cells of the next size.
+    void add_edges() {
+        for (const StartPoint& p : edges_)
+            if (!full()) (void)cells_->find_or_make_fine(p.position, p.normal, p.offset);
+        edges_.clear();
     }
 
     /// Traces elements in the order in which they were made, until no new ones are met.
     void close() {
+        struct Traced {
+            std::vector<StartPoint> points;
+            ElementView view;
+        };
         while (traced_ < cells_->elements().size() && !stopped()) {
             const std::size_t count = std::min(generation, cells_->elements().size() - traced_);
-            std::vector<ElementView> views(count);
+            std::vector<Traced> all(count);
             in_parallel(count, [&](std::size_t i, RayCounts& counts) {
                 const auto id = static_cast<ElementId>(traced_ + i);
                 FieldElement& element = cells_->elements()[id];
                 center(t_, *cells_, element, counts);
-                const std::vector<StartPoint> points = start_points(t_, *cells_, id, settings_.seed, counts);
-                views[i] = trace_element(t_, element.normal, points, id, settings_, counts);
+                all[i].points = points_of(id, counts);
+                all[i].view = trace_element(t_, element.normal, all[i].points, id, settings_, counts);
             });
-            for (const ElementView& view : views) link(view);
+            const double mean_light = traced_ > 0 ? light_ / static_cast<double>(traced_) : 0;
+            for (const Traced& traced : all)
+                if (link(traced.view, mean_light))
+                    edges_.insert(edges_.end(), traced.points.begin(), traced.points.end());
         }
     }
 
@@ -164,16 +192,35 @@ class FieldBuilder {
         }
     }
 
-    /// Turns what the next element has seen into links.
-    void link(const ElementView& view) {
+    /// Turns what the next element has seen into links. Whether the edge of a light's shadow crosses it, and
+    /// smaller cells may show where. `mean_light`: of elements so far, straight from lights, W·m⁻².
+    bool link(const ElementView& view, double mean_light) {
         add_links(links_, traced_, view.landings, true);
         links_.end_element();
         FieldElement& element = cells_->elements()[traced_];
         element.irradiance = view.light;
+        strongest_.push_back(view.strongest);
+        const float light =
+            luminance(view.light.towards(element.normal) - view.strongest.towards(element.normal));
+        light_ += light;
         const int coarse = cells_->scale().coarsest_level(element.position);
-        element.divided = !element.coarse && element.size > settings_.divide_above * view.distance
-                          && element.level < coarse + cells_->scale().finest;
+        const bool divisible = !element.coarse && element.level < coarse + cells_->scale().finest;
+        const bool edge = view.contrast > settings_.edge_above * std::max(mean_light, double{light});
+        element.divided = divisible && (edge || element.size > settings_.divide_above * view.distance);
         ++traced_;
+        return edge && (divisible || element.coarse);
+    }
+
+    /// Light that one ray has found by chance through glass or in a mirror, and that would stand for 1/128 of
+    /// all that an element sees, counts for no more than a few times what elements receive on average.
+    void limit_strongest() {
+        const auto limit = static_cast<float>(most_by_chance * light_ / static_cast<double>(traced_));
+        for (std::size_t i = 0; i < traced_; ++i) {
+            FieldElement& e = cells_->elements()[i];
+            const float found = luminance(strongest_[i].towards(e.normal));
+            if (found > limit) e.irradiance.add(strongest_[i], limit / found - 1);
+        }
+        strongest_.clear();
     }
 
     std::size_t reflect() {
@@ -181,26 +228,49 @@ class FieldBuilder {
                        irradiance_);
     }
 
-    /// Marks the few elements that reflect much more than others, if together they reflect much.
+    /// Marks the few elements that reflect much more than others, if together they reflect much, and from
+    /// so small an area that rays over all directions miss it by chance.
     void find_bright() {
-        const std::vector<float> albedos = mean_albedos();
-        std::vector<float> radiosity;
-        double power = 0, area = 0, bright = 0;
+        const std::vector<float> radiosity = mean_radiosities();
+        double power = 0, area = 0;
         std::vector<FieldElement>& elements = cells_->elements();
         for (std::size_t i = 0; i < elements.size(); ++i) {
-            radiosity.push_back(std::max(0.0f, luminance(irradiance_[i]) * albedos[i]));
             power += radiosity[i] * sqr(elements[i].size);
             area += sqr(elements[i].size);
         }
-        mean_radiance_ = area > 0 ? static_cast<float>(power / area) * inv_pi : 0;
-        const auto is_bright = [&](std::size_t i) {
-            return !elements[i].coarse && radiosity[i] * area > bright_factor * power;
-        };
-        for (std::size_t i = 0; i < elements.size(); ++i)
-            if (is_bright(i)) bright += radiosity[i] * sqr(elements[i].size);
-        if (!(bright > least_bright_share * power)) return;
-        for (std::size_t i = 0; i < elements.size(); ++i) elements[i].bright = is_bright(i);
-        cones_ = BrightCones(*cells_, radiosity);
+        if (!(power > 0)) return;
+        mean_radiance_ = static_cast<float>(power / area) * inv_pi;
+        for (const double factor : bright_factors) {
+            const auto is_bright = [&](std::size_t i) {
+                return !elements[i].coarse && double{radiosity[i]} * area > factor * power;
+            };
+            double bright_power = 0, bright_area = 0;
+            for (std::size_t i = 0; i < elements.size(); ++i) {
+                if (!is_bright(i)) continue;
+                bright_power += radiosity[i] * sqr(elements[i].size);
+                bright_area += sqr(elements[i].size);
+            }
+            if (noise_of(bright_power / power, bright_area) < least_bright_noise) continue;
+            for (std::size_t i = 0; i < elements.size(); ++i) elements[i].bright = is_bright(i);
+            cones_ = BrightCones(*cells_, radiosity);
+            return;
+        }
+    }
+
+    /// What stratified rays over all directions miss of a part of all light that comes from such an area,
+    /// seen from the scene's middle distance: their number within it, to the power of −3/4.
+    [[nodiscard]] double noise_of(double share, double area) const {
+        constexpr double rays = 4096;
+        const double distance = double{cells_->scale().size} / double{settings_.cell};
+        const double met = rays * area / (4 * double{pi} * distance * distance);
+        return share * std::pow(std::max(met, 1.0), -0.75);
+    }
+
+    [[nodiscard]] std::vector<float> mean_radiosities() const {
+        std::vector<float> radiosity = mean_albedos();
+        for (std::size_t i = 0; i < radiosity.size(); ++i)
+            radiosity[i] = std::max(0.0f, luminance(irradiance_[i]) * radiosity[i]);
+        return radiosity;
     }
 
     /// Of what rays have met of each element.
@@ -224,7 +294,7 @@ class FieldBuilder {
             std::vector<GuidedView> views(count);
             in_parallel(count, [&](std::size_t i, RayCounts& counts) {
                 const auto id = static_cast<ElementId>(first + i);
-                const std::vector<StartPoint> points = start_points(t_, *cells_, id, settings_.seed, counts);
+                const std::vector<StartPoint> points = points_of(id, counts);
                 views[i] =
                     guide_element(t_, cells_->elements()[id].normal, points, cones_, id, settings_, counts);
             });
@@ -261,9 +331,7 @@ class FieldBuilder {
             // The iterations' sum along the normal, the links' shape around it.
             const Spectrum rest = irradiance_[i] - light - linked;
             vector.add(e.normal, rest);
-            e.irradiance.x += vector.x;
-            e.irradiance.y += vector.y;
-            e.irradiance.z += vector.z;
+            e.irradiance.add(vector, 1);
         });
     }
 
@@ -277,6 +345,10 @@ class FieldBuilder {
     float mean_radiance_ = 0;
     std::vector<Spectrum> irradiance_;
     std::size_t traced_ = 0, unresolved_ = 0;
+    std::vector<IrradianceVector> strongest_;  // by traced element
+    double light_ = 0;                         // of traced elements: sum of irradiance straight from lights
+    PointReservoirs met_;                      // where rays from the seeds have met elements
+    std::vector<StartPoint> edges_;  // of elements since the last octave that edges of shadows cross
 };
 
 }  // namespace

@@ -28,10 +28,11 @@ struct FieldSettings {
     float cell = 0.05f;  // the cells' size over the median distance that rays from seeds travel
     int finest = 2;      // octaves by which cells shrink where surfaces are near each other
     float divide_above =
-        0.15f;               // cells shrink where their size exceeds this share of how far what they see is
-    int rays = 128;          // that each element traces over its hemisphere; a multiple of 16
-    int guided_rays = 32;    // to bright elements, besides; likewise
-    int light_samples = 64;  // likewise
+        0.15f;                // cells shrink where their size exceeds this share of how far what they see is
+    float edge_above = 0.2f;  // and where light that comes straight from lights differs by more of its mean
+    int rays = 128;           // that each element traces over its hemisphere; a multiple of 16
+    int guided_rays = 32;     // to bright elements, besides; likewise
+    int light_samples = 64;   // likewise
     std::size_t most_elements = 300'000;
     std::uint32_t bounces =
         0xffffffffu;  // of light, after the one that elements receive straight from lights
