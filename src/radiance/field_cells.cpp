@@ -28,6 +28,7 @@ float distance_outside(const Bounds3& box, Vec3 p) {
 
 int CellScale::coarsest_level(Vec3 p) const {
     const float outside = core.empty() ? 0 : distance_outside(core, p) / std::max(core.radius(), 1e-20f);
+    if (outside < 1) return 0;
     return std::max(-static_cast<int>(std::log2(1 + outside)), coarsest);
 }
 

@@ -36,6 +36,14 @@ bool belong_together(const FieldElement& a, const FieldElement& b) {
            && std::abs(dot(way, a.normal)) <= height && std::abs(dot(way, b.normal)) <= height;
 }
 
+/// Whether `e` has weight anywhere in the cell of `home`, whose middle is given.
+bool reaches(const FieldElement& e, const FieldElement& home, Vec3 middle) {
+    const float smaller = std::min(e.size, home.size);
+    const float far = 0.5f * (e.size + smaller + home.size) + most_height * smaller;
+    const Vec3 way = middle - e.position;
+    return std::abs(way.x) < far && std::abs(way.y) < far && std::abs(way.z) < far;
+}
+
 bool sees(const Transport& t, const FieldElement& a, const FieldElement& b, RayCounts& rays) {
     const Vec3 from = a.position + a.normal * (a.offset + lift * a.size);
     const Vec3 way = b.position + b.normal * (b.offset + lift * b.size) - from;
@@ -48,11 +56,12 @@ bool sees(const Transport& t, const FieldElement& a, const FieldElement& b, RayC
 FieldNeighbors::List find_neighbors(const Transport& t, const FieldCells& cells, ElementId id,
                                     RayCounts& rays) {
     const FieldElement& e = cells.elements()[id];
+    const Vec3 middle = cells.middle_of(e);
     std::vector<Candidate> candidates;
     for (int level = e.level - 2; level <= e.level + 2; ++level)
         cells.around(e.position, level, [&](ElementId other) {
             const FieldElement& o = cells.elements()[other];
-            if (other != id && !replaced(o, e) && belong_together(e, o))
+            if (other != id && !replaced(o, e) && belong_together(e, o) && reaches(o, e, middle))
                 candidates.push_back({length_squared(o.position - e.position), other});
         });
     std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
