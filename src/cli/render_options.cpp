@@ -11,10 +11,9 @@
 namespace relumine::cli {
 namespace {
 
-constexpr std::array<NotYet, 4> options_not_yet{{
+constexpr std::array<NotYet, 3> options_not_yet{{
     {"--preview", "the live preview"},
     {"--denoise", "the denoiser"},
-    {"--allow-dir", "scenes that span several folders"},
     {"--tev", "the live view in tev"},
 }};
 constexpr std::array<NotYet, 1> values_not_yet{{
@@ -90,6 +89,7 @@ OnlySample parse_only_sample(const std::string& text) {
 void add_output_options(CLI::App& app, RenderOptions& options) {
     add_file(app, {"SCENE", "", ".gltf, .glb; .ply, .ply.gz, .obj open as a model under a built-in sky"},
              options.scene);
+    add_access_options(app, options.scene_options);
     app.add_option("-o,--output", options.outputs, "the picture: .exr, .png or .pfm; may be repeated")
         ->type_name("FILE")
         ->option_text("FILE REQUIRED")
@@ -248,6 +248,14 @@ void add_environment_options(CLI::App& app, SceneOptions& scene) {
                "1");
     add_number(app, {"--env-rotate", "DEG", "counter-clockwise seen from +Y"},
                scene.environment_rotation_degrees, "0");
+}
+
+void add_access_options(CLI::App& app, SceneOptions& scene) {
+    app.add_option("--allow-dir", scene.allowed_folders,
+                   "files that SCENE names may lie here too, besides its own folder; may be repeated")
+        ->type_name("DIR")
+        ->option_text("DIR")
+        ->allow_extra_args(false);
 }
 
 void add_frame_options(CLI::App& app, RenderSettings& s) {

@@ -10,7 +10,6 @@
 #include "base/message.hpp"
 #include "relumine/error.hpp"
 #include "scene/quote.hpp"
-#include "scene/reference.hpp"
 
 namespace relumine {
 namespace {
@@ -22,7 +21,7 @@ ByteImage decode(const GltfFile& file, int i) {
     const std::string name = image.name.empty() ? "" : ' ' + quote(image.name);
     const std::string where = file.where(fmt::format("images[{}]{}", i, name));
     if (image.uri.empty()) return decode_byte_image(view_bytes(file, image.bufferView), where);
-    return decode_byte_image(read_reference(image.uri, folder_of(file.path), where), where);
+    return decode_byte_image(file.files->read_uri(image.uri, where), where);
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ void add_default_material(SceneData& scene) {
 
 }  // namespace
 
-SceneData read_gltf(const std::string& path) {
-    GltfFile file = read_gltf_file(path);
+SceneData read_gltf(const std::string& path, const std::vector<std::string>& allowed_folders) {
+    GltfFile file = read_gltf_file(path, allowed_folders);
     SceneData scene;
     scene.name = path;
     for (std::string& warning : file.warnings) scene.warn(std::move(warning));

@@ -12,6 +12,7 @@
 #include "relumine/error.hpp"
 #include "relumine/scene.hpp"
 #include "scene/finish_scene.hpp"
+#include "scene/quote.hpp"
 #include "scene/readers.hpp"
 
 namespace relumine {
@@ -36,9 +37,10 @@ bool has_extension(const std::string& path, const std::string& extension) {
     return name.ends_with(extension);
 }
 
-SceneData read_by_extension(const std::string& path) {
-    if (has_extension(path, ".gltf") || has_extension(path, ".glb")) return read_gltf(path);
-    if (has_extension(path, ".pbrt") || has_extension(path, ".pbrt.gz")) return read_pbrt(path);
+SceneData read_by_extension(const std::string& path, const std::vector<std::string>& allowed_folders) {
+    if (has_extension(path, ".gltf") || has_extension(path, ".glb")) return read_gltf(path, allowed_folders);
+    if (has_extension(path, ".pbrt") || has_extension(path, ".pbrt.gz"))
+        return read_pbrt(path, allowed_folders);
     if (has_extension(path, ".ply") || has_extension(path, ".ply.gz")) return read_model(path, read_ply);
     if (has_extension(path, ".obj") || has_extension(path, ".obj.gz")) return read_model(path, read_obj);
     const std::array<std::string, 8> known{".gltf", ".glb",    ".pbrt", ".pbrt.gz",
@@ -47,6 +49,11 @@ SceneData read_by_extension(const std::string& path) {
 }
 
 void check_options(const SceneOptions& options) {
+    for (const std::string& folder : options.allowed_folders) {
+        std::error_code error;
+        if (!std::filesystem::is_directory(folder, error))
+            throw SettingsError{expected_found("allowed folder", "an existing folder", quote(folder))};
+    }
     if (!(options.environment_scale >= 0) || !std::isfinite(options.environment_scale))
         throw SettingsError{expected_found("environment scale", "a finite number of at least 0",
                                            fmt::format("{:g}", options.environment_scale))};
@@ -103,7 +110,7 @@ void count_triangles(const SceneData& scene, SceneInfo& info) {
 
 Scene load_scene(const std::string& path, const SceneOptions& options) {
     check_options(options);
-    SceneData scene = read_by_extension(path);
+    SceneData scene = read_by_extension(path, options.allowed_folders);
     apply_environment(scene, options);
     return Scene{std::make_shared<const SceneData>(finish_scene(std::move(scene)))};
 }
