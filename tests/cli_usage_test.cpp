@@ -68,6 +68,7 @@ TEST(Cli, HelpNamesEveryOptionAndItsDefault) {
                                "--residual-rays",
                                "--time-limit",
                                "--memory-limit",
+                               "--texture-limit",
                                "--checkpoint",
                                "--checkpoint-interval",
                                "--resume",

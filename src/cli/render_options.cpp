@@ -158,6 +158,10 @@ void add_keeping_options(CLI::App& app, RenderOptions& options) {
                control.time_limit, "none");
     add_value(app, {"--memory-limit", "BYTES", "of the process; K, M, G, T: powers of 1024"}, "none",
               [&](const std::string& text) { control.memory_limit = parse_bytes("--memory-limit", text); });
+    add_value(app, {"--texture-limit", "BYTES", "of all textures, which are halved until they fit"},
+              "half of --memory-limit", [&](const std::string& text) {
+                  options.scene_options.texture_limit = parse_bytes("--texture-limit", text);
+              });
     add_text(app, {"--checkpoint", "FILE", "keeps what is done; removed when the pictures are written"},
              control.checkpoint);
     add_number(app, {"--checkpoint-interval", "S", "seconds between checkpoints"},
@@ -272,6 +276,8 @@ std::optional<RenderOptions> parse_render_options(const Arguments& arguments) {
     app.footer(fmt::format("Layers for --aov: {}.\n{}", fmt::join(aov_names(), ", "), exit_code_help));
     if (!parse(app, arguments, options_not_yet)) return std::nullopt;
     refuse_contradictions(options);
+    if (options.scene_options.texture_limit == 0)
+        options.scene_options.texture_limit = options.control.memory_limit / 2;
     return options;
 }
 

@@ -56,9 +56,10 @@ TEST(LoadSceneFiles, OnlyTheScenesFolderWithoutLeave) {
     for (const std::string& name : {std::string("../library/deep/ok.bin"), place.allowed, place.inside})
         EXPECT_EQ(read(place, name, {}), "refused: here: expected a file inside the scene's folder, found \""
                                              + name + "\", which leads outside");
-    EXPECT_EQ(read(place, "link-to-library.bin", {}),
-              "refused: here: expected a file inside the scene's folder, found \"link-to-library.bin\", a link "
-              "that leads outside");
+    EXPECT_EQ(
+        read(place, "link-to-library.bin", {}),
+        "refused: here: expected a file inside the scene's folder, found \"link-to-library.bin\", a link "
+        "that leads outside");
 }
 
 TEST(LoadSceneFiles, AnAllowedFolderOpensItselfAlone) {
