@@ -249,6 +249,26 @@ TEST(CliInfo, TellsWhatTheSceneHolds) {
     EXPECT_EQ(info.at("cameras"), json{"main"});
 }
 
+TEST(CliInfo, FilesOutsideTheScenesFolderNeedLeave) {
+    const ScratchFolder folder;
+    for (const char* name : {"scene", "library", "more"}) std::filesystem::create_directory(folder / name);
+    write_bytes(folder / "scene/a.pbrt",
+                "WorldBegin\nInclude \"../library/b.pbrt\"\nInclude \"../more/b.pbrt\"\n");
+    for (const char* name : {"library/b.pbrt", "more/b.pbrt"})
+        write_bytes(folder / name, "Shape \"sphere\"\n");
+    const std::string scene = folder / "scene/a.pbrt", library = folder / "library", more = folder / "more";
+    expect_one_line(run_relumine({"info", scene}), 1, "a file inside the scene's folder");
+    expect_one_line(run_relumine({"info", scene, "--allow-dir", library}), 1, "../more/b.pbrt");
+    EXPECT_EQ(run_relumine({"info", "--allow-dir", library, "--allow-dir", more, scene}).exit_code, 0);
+    expect_one_line(run_relumine({"info", scene, "--allow-dir", folder / "none"}), 2, "an existing folder");
+    const std::vector<std::string> render{"render", scene, "-o", folder / "a.png", "--spp", "1",
+                                          "--size", "4x4", "-q", "--allow-dir",    library};
+    EXPECT_EQ(run_relumine(render).exit_code, 1);
+    std::vector<std::string> allowed = render;
+    allowed.insert(allowed.end(), {"--allow-dir", more});
+    EXPECT_EQ(run_relumine(allowed).exit_code, 0);
+}
+
 TEST(CliInfo, MissingSceneIsOneLine) { expect_one_line(run_relumine({"info", "no.glb"}), 1, "no.glb"); }
 
 // ---- compare

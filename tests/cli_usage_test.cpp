@@ -38,6 +38,7 @@ TEST(Cli, HelpNamesEveryOptionAndItsDefault) {
                                "--max-depth",
                                "--radiance",
                                "--masking",
+                               "--allow-dir",
                                "--environment",
                                "--env-scale",
                                "--env-rotate",
@@ -67,6 +68,7 @@ TEST(Cli, HelpNamesEveryOptionAndItsDefault) {
                                "--residual-rays",
                                "--time-limit",
                                "--memory-limit",
+                               "--texture-limit",
                                "--checkpoint",
                                "--checkpoint-interval",
                                "--resume",
@@ -86,7 +88,7 @@ struct Usage {
 
 TEST(Cli, RefusesWhatDoesNotExistYetByName) {
     const Workplace work;
-    for (const char* option : {"--preview", "--denoise", "--allow-dir", "--tev"})
+    for (const char* option : {"--preview", "--denoise", "--tev"})
         expect_one_line(work.render({option, "1"}), 2,
                         std::string(option) + " is not available yet: it comes with ");
     for (const Usage& usage : std::vector<Usage>{{{"--tev=localhost:14158"}, "--tev is not available yet"},

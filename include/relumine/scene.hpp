@@ -19,8 +19,10 @@ struct SceneData;
 /// What `load_scene` may add to or replace in a file's scene.
 struct SceneOptions {
     std::string environment;  // lat-long `.exr`, `.hdr` or `.pfm` that replaces the scene's own; "" keeps it
-    float environment_scale = 1;             // multiplies the environment's radiance, ≥ 0
-    float environment_rotation_degrees = 0;  // counter-clockwise seen from +Y
+    float environment_scale = 1;                 // multiplies the environment's radiance, ≥ 0
+    float environment_rotation_degrees = 0;      // counter-clockwise seen from +Y
+    std::vector<std::string> allowed_folders{};  // where files that the scene names may lie, besides its own
+    std::uint64_t texture_limit = 0;  // bytes of all textures, which are halved until they fit; 0: none
 };
 
 /// What a scene holds, for people and for tests.

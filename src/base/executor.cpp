@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The executor on oneTBB.
+// The executors: oneTBB, and threads of the standard library.
 #include "base/executor.hpp"
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -36,6 +40,30 @@ class FirstError {
     std::exception_ptr error_;
 };
 
+using Work = std::function<void(std::size_t)>;
+
+void run_on_tbb(int threads, std::size_t count, const Work& work) {
+    const tbb::global_control enough(tbb::global_control::max_allowed_parallelism,
+                                     static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, work, tbb::simple_partitioner{}); });
+}
+
+/// The caller works too; where the system gives out no more threads, fewer do.
+void run_on_threads(int threads, std::size_t count, const Work& work) {
+    std::atomic<std::size_t> next = 0;
+    const auto take_pieces = [&] {
+        for (std::size_t i = next++; i < count; i = next++) work(i);
+    };
+    std::vector<std::jthread> helpers;
+    try {
+        for (std::size_t i = 1; i < std::min(static_cast<std::size_t>(threads), count); ++i)
+            helpers.emplace_back(take_pieces);
+    } catch (const std::system_error&) {
+    }
+    take_pieces();
+}
+
 }  // namespace
 
 FlushDenormals::FlushDenormals() : saved_(0) {
@@ -56,7 +84,19 @@ int resolve_threads(int requested) {
     return requested > 0 ? requested : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-void parallel_for(int threads, std::size_t count, const std::function<void(std::size_t)>& work) {
+Executor default_executor() {
+#if defined(RELUMINE_EXECUTOR_THREADS)
+    return Executor::threads;
+#else
+    return Executor::tbb;
+#endif
+}
+
+void parallel_for(int threads, std::size_t count, const Work& work) {
+    parallel_for(default_executor(), threads, count, work);
+}
+
+void parallel_for(Executor executor, int threads, std::size_t count, const Work& work) {
     FirstError error;
     const auto guarded = [&](std::size_t index) {
         const FlushDenormals flush;
@@ -66,10 +106,10 @@ void parallel_for(int threads, std::size_t count, const std::function<void(std::
             error.keep(index, std::current_exception());
         }
     };
-    const tbb::global_control enough(tbb::global_control::max_allowed_parallelism,
-                                     static_cast<std::size_t>(threads));
-    tbb::task_arena arena(threads);
-    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, guarded, tbb::simple_partitioner{}); });
+    if (executor == Executor::tbb)
+        run_on_tbb(threads, count, guarded);
+    else
+        run_on_threads(threads, count, guarded);
     error.rethrow();
 }
 

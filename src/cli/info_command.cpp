@@ -4,6 +4,7 @@
 
 #include "cli/command.hpp"
 #include "cli/console.hpp"
+#include "cli/render_options.hpp"
 #include "cli/report.hpp"
 #include "relumine/scene.hpp"
 
@@ -14,11 +15,13 @@ ExitCode run_info(const Arguments& arguments) {
                  "relumine info");
     std::string file;
     bool json = false;
-    add_file(app, {"SCENE", "", ".gltf, .glb, .ply, .ply.gz or .obj"}, file);
+    add_file(app, {"SCENE", "", ".gltf, .glb, .pbrt, .ply, .ply.gz or .obj"}, file);
+    SceneOptions options;
+    add_access_options(app, options);
     app.add_flag("--json", json, "as a JSON object; keys: \"scene\" in docs/statistics.md");
     if (!parse(app, arguments)) return ExitCode::done;
 
-    const SceneInfo info = load_scene(file).info();
+    const SceneInfo info = load_scene(file, options).info();
     print(json ? json_text(scene_json(file, info), 2) + "\n" : scene_text(file, info));
     return ExitCode::done;
 }

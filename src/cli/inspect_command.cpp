@@ -49,6 +49,7 @@ void add_options(CLI::App& app, Options& options) {
     app.option_defaults()->group("What to look at, and where to put it");
     add_file(app, {"SCENE", "", ".gltf, .glb; .ply, .ply.gz, .obj open as a model under a built-in sky"},
              options.scene);
+    add_access_options(app, options.scene_options);
     add_value(app, {"--pixel", "X,Y", "of the full frame, from the top left"}, "",
               [&](const std::string& text) { options.pixel = parse_pixel(text); })
         ->option_text("X,Y REQUIRED")

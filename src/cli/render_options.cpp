@@ -11,10 +11,9 @@
 namespace relumine::cli {
 namespace {
 
-constexpr std::array<NotYet, 4> options_not_yet{{
+constexpr std::array<NotYet, 3> options_not_yet{{
     {"--preview", "the live preview"},
     {"--denoise", "the denoiser"},
-    {"--allow-dir", "scenes that span several folders"},
     {"--tev", "the live view in tev"},
 }};
 constexpr std::array<NotYet, 1> values_not_yet{{
@@ -90,6 +89,7 @@ OnlySample parse_only_sample(const std::string& text) {
 void add_output_options(CLI::App& app, RenderOptions& options) {
     add_file(app, {"SCENE", "", ".gltf, .glb; .ply, .ply.gz, .obj open as a model under a built-in sky"},
              options.scene);
+    add_access_options(app, options.scene_options);
     app.add_option("-o,--output", options.outputs, "the picture: .exr, .png or .pfm; may be repeated")
         ->type_name("FILE")
         ->option_text("FILE REQUIRED")
@@ -158,6 +158,10 @@ void add_keeping_options(CLI::App& app, RenderOptions& options) {
                control.time_limit, "none");
     add_value(app, {"--memory-limit", "BYTES", "of the process; K, M, G, T: powers of 1024"}, "none",
               [&](const std::string& text) { control.memory_limit = parse_bytes("--memory-limit", text); });
+    add_value(app, {"--texture-limit", "BYTES", "of all textures, which are halved until they fit"},
+              "half of --memory-limit", [&](const std::string& text) {
+                  options.scene_options.texture_limit = parse_bytes("--texture-limit", text);
+              });
     add_text(app, {"--checkpoint", "FILE", "keeps what is done; removed when the pictures are written"},
              control.checkpoint);
     add_number(app, {"--checkpoint-interval", "S", "seconds between checkpoints"},
@@ -250,6 +254,14 @@ void add_environment_options(CLI::App& app, SceneOptions& scene) {
                scene.environment_rotation_degrees, "0");
 }
 
+void add_access_options(CLI::App& app, SceneOptions& scene) {
+    app.add_option("--allow-dir", scene.allowed_folders,
+                   "files that SCENE names may lie here too, besides its own folder; may be repeated")
+        ->type_name("DIR")
+        ->option_text("DIR")
+        ->allow_extra_args(false);
+}
+
 void add_frame_options(CLI::App& app, RenderSettings& s) {
     add_text(app, {"--camera", "NAME|INDEX", "the first by default; a framing one where there is none"},
              s.camera);
@@ -264,6 +276,8 @@ std::optional<RenderOptions> parse_render_options(const Arguments& arguments) {
     app.footer(fmt::format("Layers for --aov: {}.\n{}", fmt::join(aov_names(), ", "), exit_code_help));
     if (!parse(app, arguments, options_not_yet)) return std::nullopt;
     refuse_contradictions(options);
+    if (options.scene_options.texture_limit == 0)
+        options.scene_options.texture_limit = options.control.memory_limit / 2;
     return options;
 }
 

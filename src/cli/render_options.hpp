@@ -39,6 +39,7 @@ struct RenderOptions {
 void add_record_options(CLI::App& app, RenderSettings& settings);
 void add_light_options(CLI::App& app, RenderSettings& settings);
 void add_environment_options(CLI::App& app, SceneOptions& scene);
+void add_access_options(CLI::App& app, SceneOptions& scene);
 void add_frame_options(CLI::App& app, RenderSettings& settings);
 
 /// Empty when help was wanted and has been printed. Throws UsageError.

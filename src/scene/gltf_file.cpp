@@ -10,14 +10,11 @@
 #include "relumine/error.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/quote.hpp"
-#include "scene/reference.hpp"
 
 namespace relumine {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::size_t max_referenced_bytes = std::size_t{8} << 30;  // all buffers together
 
 /// The bytes of buffer `i`, cut to its byteLength.
 std::span<const std::uint8_t> load_buffer(GltfFile& file, const json& buffer, std::size_t i) {
@@ -25,7 +22,7 @@ std::span<const std::uint8_t> load_buffer(GltfFile& file, const json& buffer, st
     std::span<const std::uint8_t> bytes;
     if (buffer.contains("uri")) {
         const auto& uri = buffer["uri"].get_ref<const std::string&>();
-        file.loaded.push_back(read_reference(uri, folder_of(file.path), file.where(place + ".uri")));
+        file.loaded.push_back(file.files->read_uri(uri, file.where(place + ".uri")));
         bytes = file.loaded.back();
     } else if (i == 0 && file.container.binary) {
         bytes = *file.container.binary;
@@ -41,15 +38,7 @@ std::span<const std::uint8_t> load_buffer(GltfFile& file, const json& buffer, st
 }
 
 void load_buffers(GltfFile& file, const json& buffers) {
-    std::size_t total = 0;
-    for (std::size_t i = 0; i < buffers.size(); ++i) {
-        const std::size_t loaded_before = file.loaded.size();
-        file.buffers.push_back(load_buffer(file, buffers[i], i));
-        if (file.loaded.size() > loaded_before) total += file.loaded.back().size();
-        if (total > max_referenced_bytes)
-            throw SceneError{expected_found(file.where("buffers"),
-                                            fmt::format("at most {} bytes", max_referenced_bytes), "more")};
-    }
+    for (std::size_t i = 0; i < buffers.size(); ++i) file.buffers.push_back(load_buffer(file, buffers[i], i));
 }
 
 void load_images(GltfFile& file, const json& images) {
@@ -99,9 +88,10 @@ tinygltf::Model parse_model(const json& document, const std::string& path) {
 
 }  // namespace
 
-GltfFile read_gltf_file(const std::string& path) {
+GltfFile read_gltf_file(const std::string& path, const std::vector<std::string>& allowed_folders) {
     GltfFile file;
     file.path = path;
+    file.files = std::make_unique<SceneFiles>(path, allowed_folders);
     file.container = read_gltf_container(path);
     json document = read_gltf_document(file.container.json, path, file.warnings);
     const json buffers = document.value("buffers", json::array());

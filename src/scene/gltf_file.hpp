@@ -10,11 +10,13 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "scene/gltf_container.hpp"
+#include "scene/scene_files.hpp"
 
 namespace relumine {
 
@@ -26,6 +28,7 @@ struct GltfFile {
         buffers;  // of exactly `byteLength` bytes, into `container` or `loaded`
     GltfContainer container;
     std::vector<std::vector<std::uint8_t>> loaded;
+    std::unique_ptr<SceneFiles> files;  // for whatever has a URI
     std::vector<std::string> warnings;
 
     /// "kitchen.glb: place".
@@ -33,7 +36,8 @@ struct GltfFile {
 };
 
 /// Reads the file and all of its buffers; images stay encoded. Throws SceneError.
-[[nodiscard]] GltfFile read_gltf_file(const std::string& path);
+[[nodiscard]] GltfFile read_gltf_file(const std::string& path,
+                                      const std::vector<std::string>& allowed_folders = {});
 
 /// The bytes of a buffer view.
 [[nodiscard]] std::span<const std::uint8_t> view_bytes(const GltfFile& file, int buffer_view);

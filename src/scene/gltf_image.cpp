@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <mutex>
 
 #include "base/executor.hpp"
 #include "base/message.hpp"
 #include "relumine/error.hpp"
 #include "scene/quote.hpp"
-#include "scene/reference.hpp"
 
 namespace relumine {
 namespace {
@@ -22,18 +22,23 @@ ByteImage decode(const GltfFile& file, int i) {
     const std::string name = image.name.empty() ? "" : ' ' + quote(image.name);
     const std::string where = file.where(fmt::format("images[{}]{}", i, name));
     if (image.uri.empty()) return decode_byte_image(view_bytes(file, image.bufferView), where);
-    return decode_byte_image(read_reference(image.uri, folder_of(file.path), where), where);
+    return decode_byte_image(file.files->read_uri(image.uri, where), where);
 }
 
 }  // namespace
 
-std::vector<ByteImage> decode_gltf_images(const GltfFile& file, const std::vector<int>& which) {
+std::vector<ByteImage> decode_gltf_images(const GltfFile& file, const std::vector<int>& which,
+                                          TextureBudget& budget) {
     std::vector<ByteImage> images(which.size());
     std::atomic<std::size_t> pixels = 0;
+    std::mutex mutex;
     parallel_for(resolve_threads(0), which.size(), [&](std::size_t i) {
         if (pixels > max_pixels_in_all) return;
-        images[i] = decode(file, which[i]);
-        pixels += static_cast<std::size_t>(images[i].width) * static_cast<std::size_t>(images[i].height);
+        ByteImage image = decode(file, which[i]);
+        pixels += static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+        const std::lock_guard lock(mutex);
+        images[i] = std::move(image);
+        budget.add(images, i);
     });
     if (pixels > max_pixels_in_all)
         throw SceneError{expected_found(file.where("images"),

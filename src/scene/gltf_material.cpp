@@ -227,10 +227,12 @@ ImageId MaterialReader::image(int source) {
 
 }  // namespace
 
-void read_gltf_materials(const GltfFile& file, SceneData& scene) {
+void read_gltf_materials(const GltfFile& file, std::uint64_t texture_limit, SceneData& scene) {
     MaterialReader reader{file, scene};
     for (std::size_t i = 0; i < file.model.materials.size(); ++i) scene.materials.push_back(reader.read(i));
-    scene.images = decode_gltf_images(file, reader.used_images());
+    TextureBudget budget(texture_limit);
+    scene.images = decode_gltf_images(file, reader.used_images(), budget);
+    if (std::string warning = budget.warning(); !warning.empty()) scene.warn(std::move(warning));
 }
 
 }  // namespace relumine

@@ -9,6 +9,6 @@ namespace relumine {
 
 /// Fills `scene.materials`, in file order, and `scene.images` with the images that they use, decoded on all
 /// threads. Throws SceneError or ImageError.
-void read_gltf_materials(const GltfFile& file, SceneData& scene);
+void read_gltf_materials(const GltfFile& file, std::uint64_t texture_limit, SceneData& scene);
 
 }  // namespace relumine

@@ -57,8 +57,8 @@ void add_default_material(SceneData& scene) {
 
 }  // namespace
 
-SceneData read_gltf(const std::string& path) {
-    GltfFile file = read_gltf_file(path);
+SceneData read_gltf(const std::string& path, const SceneOptions& options) {
+    GltfFile file = read_gltf_file(path, options.allowed_folders);
     SceneData scene;
     scene.name = path;
     for (std::string& warning : file.warnings) scene.warn(std::move(warning));
@@ -68,7 +68,7 @@ SceneData read_gltf(const std::string& path) {
         add_gltf_light(file, placed, scene);
         add_gltf_camera(file, placed, scene);
     }
-    read_gltf_materials(file, scene);
+    read_gltf_materials(file, options.texture_limit, scene);
     add_default_material(scene);
     return scene;
 }

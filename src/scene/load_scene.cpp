@@ -12,7 +12,9 @@
 #include "relumine/error.hpp"
 #include "relumine/scene.hpp"
 #include "scene/finish_scene.hpp"
+#include "scene/quote.hpp"
 #include "scene/readers.hpp"
+#include "scene/texture_budget.hpp"
 
 namespace relumine {
 namespace {
@@ -36,9 +38,9 @@ bool has_extension(const std::string& path, const std::string& extension) {
     return name.ends_with(extension);
 }
 
-SceneData read_by_extension(const std::string& path) {
-    if (has_extension(path, ".gltf") || has_extension(path, ".glb")) return read_gltf(path);
-    if (has_extension(path, ".pbrt") || has_extension(path, ".pbrt.gz")) return read_pbrt(path);
+SceneData read_by_extension(const std::string& path, const SceneOptions& options) {
+    if (has_extension(path, ".gltf") || has_extension(path, ".glb")) return read_gltf(path, options);
+    if (has_extension(path, ".pbrt") || has_extension(path, ".pbrt.gz")) return read_pbrt(path, options);
     if (has_extension(path, ".ply") || has_extension(path, ".ply.gz")) return read_model(path, read_ply);
     if (has_extension(path, ".obj") || has_extension(path, ".obj.gz")) return read_model(path, read_obj);
     const std::array<std::string, 8> known{".gltf", ".glb",    ".pbrt", ".pbrt.gz",
@@ -47,12 +49,24 @@ SceneData read_by_extension(const std::string& path) {
 }
 
 void check_options(const SceneOptions& options) {
+    for (const std::string& folder : options.allowed_folders) {
+        std::error_code error;
+        if (!std::filesystem::is_directory(folder, error))
+            throw SettingsError{expected_found("allowed folder", "an existing folder", quote(folder))};
+    }
     if (!(options.environment_scale >= 0) || !std::isfinite(options.environment_scale))
         throw SettingsError{expected_found("environment scale", "a finite number of at least 0",
                                            fmt::format("{:g}", options.environment_scale))};
     if (!std::isfinite(options.environment_rotation_degrees))
         throw SettingsError{expected_found("environment rotation", "a finite number of degrees",
                                            fmt::format("{:g}", options.environment_rotation_degrees))};
+}
+
+/// glTF's textures fit from the beginning, since there may be many; the others' are made to fit here.
+void fit_textures(SceneData& scene, const SceneOptions& options) {
+    TextureBudget budget(options.texture_limit);
+    for (std::size_t i = 0; i < scene.images.size(); ++i) budget.add(scene.images, i);
+    if (std::string warning = budget.warning(); !warning.empty()) scene.warn(std::move(warning));
 }
 
 void apply_environment(SceneData& scene, const SceneOptions& options) {
@@ -103,7 +117,8 @@ void count_triangles(const SceneData& scene, SceneInfo& info) {
 
 Scene load_scene(const std::string& path, const SceneOptions& options) {
     check_options(options);
-    SceneData scene = read_by_extension(path);
+    SceneData scene = read_by_extension(path, options);
+    if (!has_extension(path, ".gltf") && !has_extension(path, ".glb")) fit_textures(scene, options);
     apply_environment(scene, options);
     return Scene{std::make_shared<const SceneData>(finish_scene(std::move(scene)))};
 }

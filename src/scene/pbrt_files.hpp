@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that a pbrt scene refers to: contained in the scene's folder, and within limits.
+// The files that a pbrt scene refers to, with pbrt's places in the messages.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/pbrt_tokenizer.hpp"
+#include "scene/scene_files.hpp"
 
 namespace relumine {
 
@@ -14,17 +15,24 @@ namespace relumine {
 /// that of the file that names them. Throws SceneError.
 class PbrtFiles {
   public:
-    explicit PbrtFiles(const std::string& scene_path);
+    explicit PbrtFiles(const std::string& scene_path, const std::vector<std::string>& allowed_folders = {})
+        : files_(scene_path, allowed_folders) {}
 
-    /// The real path of the file, which lies in the scene's folder.
-    [[nodiscard]] std::string resolve(const std::string& name, const PbrtPlace& place) const;
+    /// The real path of the file.
+    [[nodiscard]] std::string resolve(const std::string& name, const PbrtPlace& place) const {
+        return files_.resolve(name, place.text(), file_of(place));
+    }
     /// The file's bytes, unpacked where it is packed with gzip.
-    [[nodiscard]] std::vector<std::uint8_t> read(const std::string& name, const PbrtPlace& place);
+    [[nodiscard]] std::vector<std::uint8_t> read(const std::string& name, const PbrtPlace& place) {
+        return files_.read(name, place.text(), file_of(place));
+    }
 
   private:
-    std::string folder_;
-    std::size_t files_ = 0;
-    std::size_t bytes_left_;
+    [[nodiscard]] static std::string file_of(const PbrtPlace& place) {
+        return place.file ? *place.file : std::string{};
+    }
+
+    SceneFiles files_;
 };
 
 }  // namespace relumine

@@ -18,8 +18,6 @@
 namespace relumine {
 namespace {
 
-constexpr std::size_t max_include_depth = 32;
-
 double to_number(const PbrtToken& token) {
     const std::string& text = token.text;
     const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);

@@ -197,8 +197,8 @@ void note_depth(PbrtScene& scene) {
 
 }  // namespace
 
-SceneData read_pbrt(const std::string& path) {
-    PbrtFiles files(path);
+SceneData read_pbrt(const std::string& path, const SceneOptions& options) {
+    PbrtFiles files(path, options.allowed_folders);
     PbrtScene scene = parse_pbrt(path, files);
     SceneData out;
     out.name = path;

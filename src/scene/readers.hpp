@@ -6,12 +6,14 @@
 #include <span>
 #include <string>
 
+#include "relumine/scene.hpp"
 #include "scene/scene_data.hpp"
 
 namespace relumine {
 
-/// glTF 2.0, `.gltf` or `.glb`. Throws SceneError or ImageError.
-[[nodiscard]] SceneData read_gltf(const std::string& path);
+/// glTF 2.0, `.gltf` or `.glb`. Files that it refers to lie in its folder or where `options` allow; its
+/// textures are halved to fit their limit. Throws SceneError or ImageError.
+[[nodiscard]] SceneData read_gltf(const std::string& path, const SceneOptions& options = {});
 
 /// A mesh alone, without material, camera or light; polygons are cut into triangles. The file may be packed
 /// with gzip. What was left out is added to `warnings`. Throws SceneError or FileError.
@@ -22,8 +24,9 @@ namespace relumine {
 [[nodiscard]] Mesh parse_ply(std::span<const std::uint8_t> bytes, const std::string& path,
                              std::vector<std::string>& warnings);
 
-/// pbrt-v4's scene description, `.pbrt`, with all that it includes. Throws SceneError or ImageError.
-[[nodiscard]] SceneData read_pbrt(const std::string& path);
+/// pbrt-v4's scene description, `.pbrt`, with all that it includes; files as for glTF. Throws SceneError or
+/// ImageError.
+[[nodiscard]] SceneData read_pbrt(const std::string& path, const SceneOptions& options = {});
 
 /// Lat-long `.exr`, `.hdr`, `.pfm`. Negative or non-finite texels become 0 and are counted in a warning.
 /// Throws ImageError.

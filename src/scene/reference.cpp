@@ -11,7 +11,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/file.hpp"
 #include "base/message.hpp"
 #include "relumine/error.hpp"
 #include "scene/quote.hpp"
@@ -97,29 +96,42 @@ bool leaves_folder(const fs::path& relative) {
     return relative.empty() || relative.is_absolute() || *relative.begin() == "..";
 }
 
+/// Whether the real path `target` lies inside one of these folders.
+bool lies_in_one_of(const fs::path& target, const std::vector<std::string>& folders) {
+    return std::ranges::any_of(folders, [&](const std::string& folder) {
+        std::error_code error;
+        const fs::path root = fs::canonical(folder, error);
+        return !error && !leaves_folder(target.lexically_relative(root));
+    });
+}
+
 }  // namespace
 
-std::string contained_path(const std::string& name, const std::string& folder, const std::string& where) {
-    const std::string expected = "a file inside the scene's folder";
+std::string contained_path(const std::string& name, const std::string& folder, const std::string& where,
+                           const std::vector<std::string>& allowed) {
+    const std::string expected = allowed.empty() ? "a file inside the scene's folder"
+                                                 : "a file inside the scene's folder or an allowed one";
     if (name.empty()) refuse(where, expected, "an empty name");
     const fs::path relative{name};
-    if (leaves_folder(relative.lexically_normal()))
-        refuse(where, expected, quote(name) + ", which leads outside");
+    const bool leaves = leaves_folder(relative.lexically_normal());
+    if (leaves && allowed.empty()) refuse(where, expected, quote(name) + ", which leads outside");
     std::error_code error;
     const fs::path root = fs::canonical(folder, error);
     const fs::path target = error ? fs::path{} : fs::canonical(root / relative, error);
     if (error) refuse(where, "a file that can be read", fmt::format("{}: {}", quote(name), error.message()));
-    if (leaves_folder(target.lexically_relative(root)))
-        refuse(where, expected, quote(name) + ", a link that leads outside");
+    if (leaves_folder(target.lexically_relative(root)) && !lies_in_one_of(target, allowed))
+        refuse(where, expected,
+               quote(name) + (leaves ? ", which leads outside" : ", a link that leads outside"));
     return target.string();
 }
 
 std::vector<std::uint8_t> read_reference(const std::string& uri, const std::string& folder,
-                                         const std::string& where) {
+                                         const std::string& where, const std::vector<std::string>& allowed,
+                                         std::size_t limit) {
     if (uri.starts_with("data:")) return data_uri(uri, where);
     if (has_scheme(uri)) refuse(where, "a file inside the scene's folder", quote(uri));
     try {
-        return read_file(contained_path(percent_decoded(uri, where), folder, where));
+        return read_file(contained_path(percent_decoded(uri, where), folder, where, allowed), limit);
     } catch (const SceneError&) {
         throw;
     } catch (const FileError& error) {

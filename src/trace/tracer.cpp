@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "base/executor.hpp"
 #include "base/instruction_set.hpp"
 #include "relumine/error.hpp"
 #include "trace/embree.hpp"
@@ -22,6 +23,10 @@ namespace {
 /// exactly equal distances: a constant makes the tree the same on every machine, whatever the number of
 /// threads that really work.
 constexpr std::size_t build_slots = 8;
+
+/// Embree builds on oneTBB whatever our executor is. Without it, one thread alone fills all slots: the same
+/// tree.
+std::size_t build_threads() { return default_executor() == Executor::tbb ? build_slots + 1 : 1; }
 
 std::string device_options() {
     const std::string set = chosen_instruction_set();  // Embree knows them by the same names, but for one
@@ -188,7 +193,7 @@ struct Tracer::Impl {
 
 Tracer::Tracer(const SceneData& scene, OpacityFunction opacity, PaneModel panes)
     : impl_(std::make_unique<Impl>(scene, std::move(opacity), std::move(panes))) {
-    const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, build_slots + 1);
+    const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, build_threads());
     impl_->build();
     asks_for_opacity_ = !impl_->filters.empty();
     has_panes_ = impl_->has_panes;
