@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,8 +20,9 @@ struct SceneData;
 /// What `load_scene` may add to or replace in a file's scene.
 struct SceneOptions {
     std::string environment;  // lat-long `.exr`, `.hdr` or `.pfm` that replaces the scene's own; "" keeps it
-    float environment_scale = 1;             // multiplies the environment's radiance, ≥ 0
-    float environment_rotation_degrees = 0;  // counter-clockwise seen from +Y
+    float environment_scale = 1;                       // multiplies the environment's radiance, ≥ 0
+    float environment_rotation_degrees = 0;            // counter-clockwise seen from +Y
+    std::map<std::string, std::string> definitions{};  // values of a Mitsuba scene's $parameters, by name
 };
 
 /// What a scene holds, for people and for tests.

@@ -14,7 +14,7 @@ ExitCode run_info(const Arguments& arguments) {
                  "relumine info");
     std::string file;
     bool json = false;
-    add_file(app, {"SCENE", "", ".gltf, .glb, .ply, .ply.gz or .obj"}, file);
+    add_file(app, {"SCENE", "", ".gltf, .glb, .pbrt, .xml, .ply, .ply.gz or .obj"}, file);
     app.add_flag("--json", json, "as a JSON object; keys: \"scene\" in docs/statistics.md");
     if (!parse(app, arguments)) return ExitCode::done;
 

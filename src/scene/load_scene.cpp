@@ -36,12 +36,16 @@ bool has_extension(const std::string& path, const std::string& extension) {
     return name.ends_with(extension);
 }
 
-SceneData read_by_extension(const std::string& path) {
+SceneData read_by_extension(const std::string& path, const SceneOptions& options) {
+    if (has_extension(path, ".xml")) return read_mitsuba(path, options.definitions);
+    if (!options.definitions.empty())
+        throw SettingsError{
+            expected_found("definitions", "a Mitsuba scene, whose parameters they set", path)};
     if (has_extension(path, ".gltf") || has_extension(path, ".glb")) return read_gltf(path);
     if (has_extension(path, ".pbrt") || has_extension(path, ".pbrt.gz")) return read_pbrt(path);
     if (has_extension(path, ".ply") || has_extension(path, ".ply.gz")) return read_model(path, read_ply);
     if (has_extension(path, ".obj") || has_extension(path, ".obj.gz")) return read_model(path, read_obj);
-    const std::array<std::string, 8> known{".gltf", ".glb",    ".pbrt", ".pbrt.gz",
+    const std::array<std::string, 9> known{".gltf", ".glb",    ".pbrt", ".pbrt.gz", ".xml",
                                            ".ply",  ".ply.gz", ".obj",  ".obj.gz"};
     throw SceneError{expected_found(path, "a scene file that ends in " + one_of(known), "another ending")};
 }
@@ -103,7 +107,7 @@ void count_triangles(const SceneData& scene, SceneInfo& info) {
 
 Scene load_scene(const std::string& path, const SceneOptions& options) {
     check_options(options);
-    SceneData scene = read_by_extension(path);
+    SceneData scene = read_by_extension(path, options);
     apply_environment(scene, options);
     return Scene{std::make_shared<const SceneData>(finish_scene(std::move(scene)))};
 }

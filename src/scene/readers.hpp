@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 
@@ -24,6 +25,11 @@ namespace relumine {
 
 /// pbrt-v4's scene description, `.pbrt`, with all that it includes. Throws SceneError or ImageError.
 [[nodiscard]] SceneData read_pbrt(const std::string& path);
+
+/// Mitsuba's scene description, `.xml` of version 2 or 3, with all that it includes. `definitions` go before
+/// the defaults of its parameters. Throws SceneError or ImageError.
+[[nodiscard]] SceneData read_mitsuba(const std::string& path,
+                                     const std::map<std::string, std::string>& definitions = {});
 
 /// Lat-long `.exr`, `.hdr`, `.pfm`. Negative or non-finite texels become 0 and are counted in a warning.
 /// Throws ImageError.

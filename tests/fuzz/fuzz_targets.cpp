@@ -50,6 +50,11 @@ void run_gltf(Bytes bytes) {
     may_refuse([&] { (void)finish_scene(read_gltf(file.path())); });
 }
 
+void run_mitsuba(Bytes bytes) {
+    const MemoryFile file(bytes);
+    may_refuse([&] { (void)finish_scene(read_mitsuba(file.path())); });
+}
+
 template <auto read>
 void run_model(Bytes bytes) {
     const MemoryFile file(bytes);
@@ -84,9 +89,13 @@ void run_checkpoint(Bytes bytes) {
 }  // namespace
 
 const std::vector<Target>& targets() {
-    static const std::vector<Target> all{{"gltf", run_gltf},           {"ply", run_model<read_ply>},
-                                         {"obj", run_model<read_obj>}, {"picture", run_picture},
-                                         {"texture", run_texture},     {"checkpoint", run_checkpoint}};
+    static const std::vector<Target> all{{"gltf", run_gltf},
+                                         {"mitsuba", run_mitsuba},
+                                         {"ply", run_model<read_ply>},
+                                         {"obj", run_model<read_obj>},
+                                         {"picture", run_picture},
+                                         {"texture", run_texture},
+                                         {"checkpoint", run_checkpoint}};
     return all;
 }
 
