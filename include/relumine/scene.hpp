@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,6 +24,7 @@ struct SceneOptions {
     float environment_rotation_degrees = 0;      // counter-clockwise seen from +Y
     std::vector<std::string> allowed_folders{};  // where files that the scene names may lie, besides its own
     std::uint64_t texture_limit = 0;  // bytes of all textures, which are halved until they fit; 0: none
+    std::map<std::string, std::string> definitions{};  // values of a Mitsuba scene's $parameters, by name
 };
 
 /// What a scene holds, for people and for tests.

@@ -15,7 +15,7 @@ ExitCode run_info(const Arguments& arguments) {
                  "relumine info");
     std::string file;
     bool json = false;
-    add_file(app, {"SCENE", "", ".gltf, .glb, .pbrt, .ply, .ply.gz or .obj"}, file);
+    add_file(app, {"SCENE", "", ".gltf, .glb, .pbrt, .xml, .ply, .ply.gz or .obj"}, file);
     SceneOptions options;
     add_access_options(app, options);
     app.add_flag("--json", json, "as a JSON object; keys: \"scene\" in docs/statistics.md");

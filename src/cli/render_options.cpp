@@ -252,6 +252,19 @@ void add_environment_options(CLI::App& app, SceneOptions& scene) {
                "1");
     add_number(app, {"--env-rotate", "DEG", "counter-clockwise seen from +Y"},
                scene.environment_rotation_degrees, "0");
+    app.add_option_function<std::vector<std::string>>(
+           "-D,--define",
+           [&scene](const std::vector<std::string>& definitions) {
+               for (const std::string& text : definitions) {
+                   const std::size_t equals = text.find('=');
+                   if (equals == 0 || equals == text.npos)
+                       throw CLI::ValidationError{"--define", "expected NAME=VALUE, found " + text};
+                   scene.definitions[text.substr(0, equals)] = text.substr(equals + 1);
+               }
+           },
+           "the value of a Mitsuba scene's $NAME; may be given several times")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);
 }
 
 void add_access_options(CLI::App& app, SceneOptions& scene) {

@@ -39,11 +39,15 @@ bool has_extension(const std::string& path, const std::string& extension) {
 }
 
 SceneData read_by_extension(const std::string& path, const SceneOptions& options) {
+    if (has_extension(path, ".xml")) return read_mitsuba(path, options);
+    if (!options.definitions.empty())
+        throw SettingsError{
+            expected_found("definitions", "a Mitsuba scene, whose parameters they set", path)};
     if (has_extension(path, ".gltf") || has_extension(path, ".glb")) return read_gltf(path, options);
     if (has_extension(path, ".pbrt") || has_extension(path, ".pbrt.gz")) return read_pbrt(path, options);
     if (has_extension(path, ".ply") || has_extension(path, ".ply.gz")) return read_model(path, read_ply);
     if (has_extension(path, ".obj") || has_extension(path, ".obj.gz")) return read_model(path, read_obj);
-    const std::array<std::string, 8> known{".gltf", ".glb",    ".pbrt", ".pbrt.gz",
+    const std::array<std::string, 9> known{".gltf", ".glb",    ".pbrt", ".pbrt.gz", ".xml",
                                            ".ply",  ".ply.gz", ".obj",  ".obj.gz"};
     throw SceneError{expected_found(path, "a scene file that ends in " + one_of(known), "another ending")};
 }

@@ -76,6 +76,12 @@ Triple light_rgb(const std::function<double(double)>& power, const std::function
 
 double white(double nm) { return at(cie_d65, nm); }
 
+/// Radiance of a black body, W·m⁻²·sr⁻¹·nm⁻¹.
+double planck(double nm, double kelvin) {
+    const double m = nm * 1e-9;
+    return 1.191042972e-25 / (std::pow(m, 5) * std::expm1(0.01438776877 / (m * kelvin)));
+}
+
 /// Between the pairs linear, outside of them 0, as pbrt has it.
 double sample(std::span<const double> pairs, double nm) {
     const std::size_t count = pairs.size() / 2;
@@ -201,11 +207,16 @@ Spectrum clamped(Spectrum s) {
 }  // namespace
 
 Spectrum blackbody_rgb(double kelvin) {
-    const auto planck = [&](double nm) {
-        const double m = nm * 1e-9;
-        return 1e-25 / (std::pow(m, 5) * std::expm1(0.01438776877 / (m * kelvin)));
-    };
-    return to_spectrum(light_rgb(planck, planck));
+    const auto power = [&](double nm) { return planck(nm, kelvin); };
+    return to_spectrum(light_rgb(power, power));
+}
+
+Spectrum blackbody_radiance_rgb(double kelvin) {
+    return to_spectrum(light_rgb([&](double nm) { return planck(nm, kelvin); }, [](double) { return 1.0; }));
+}
+
+Spectrum light_rgb_of_samples(std::span<const double> pairs) {
+    return to_spectrum(light_rgb([&](double nm) { return sample(pairs, nm); }, [](double) { return 1.0; }));
 }
 
 Spectrum rgb_of_samples(std::span<const double> pairs, PbrtSpectrumUse use) {

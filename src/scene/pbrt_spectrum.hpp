@@ -23,6 +23,11 @@ enum class PbrtSpectrumUse {
 /// RGB of a spectrum of wavelengths (nm, increasing) and values, piecewise linear.
 [[nodiscard]] Spectrum rgb_of_samples(std::span<const double> pairs, PbrtSpectrumUse use);
 
+/// RGB of a light whose spectrum is given in the units of a constant one of luminance 1.
+[[nodiscard]] Spectrum light_rgb_of_samples(std::span<const double> pairs);
+/// The same of a black body's radiance in W·m⁻²·sr⁻¹·nm⁻¹.
+[[nodiscard]] Spectrum blackbody_radiance_rgb(double kelvin);
+
 /// RGB of a blackbody at `kelvin`, luminance 1.
 [[nodiscard]] Spectrum blackbody_rgb(double kelvin);
 

@@ -28,6 +28,10 @@ namespace relumine {
 /// ImageError.
 [[nodiscard]] SceneData read_pbrt(const std::string& path, const SceneOptions& options = {});
 
+/// Mitsuba's scene description, `.xml` of version 2 or 3, with all that it includes; files as for glTF. The
+/// options' definitions go before the defaults of its parameters. Throws SceneError or ImageError.
+[[nodiscard]] SceneData read_mitsuba(const std::string& path, const SceneOptions& options = {});
+
 /// Lat-long `.exr`, `.hdr`, `.pfm`. Negative or non-finite texels become 0 and are counted in a warning.
 /// Throws ImageError.
 [[nodiscard]] Environment read_environment(const std::string& path, std::vector<std::string>& warnings);

@@ -55,6 +55,11 @@ void run_pbrt(Bytes bytes) {
     may_refuse([&] { (void)finish_scene(read_pbrt(file.path())); });
 }
 
+void run_mitsuba(Bytes bytes) {
+    const MemoryFile file(bytes);
+    may_refuse([&] { (void)finish_scene(read_mitsuba(file.path())); });
+}
+
 template <auto read>
 void run_model(Bytes bytes) {
     const MemoryFile file(bytes);
@@ -91,6 +96,7 @@ void run_checkpoint(Bytes bytes) {
 const std::vector<Target>& targets() {
     static const std::vector<Target> all{{"gltf", run_gltf},
                                          {"pbrt", run_pbrt},
+                                         {"mitsuba", run_mitsuba},
                                          {"ply", run_model<read_ply>},
                                          {"obj", run_model<read_obj>},
                                          {"picture", run_picture},

@@ -17,7 +17,7 @@ struct Target {
     void (*run)(Bytes);
 };
 
-/// gltf, pbrt, ply, obj: scenes; picture: EXR, HDR, PFM, PNG, JPEG as pictures; texture: PNG, JPEG as
+/// gltf, pbrt, mitsuba, ply, obj: scenes; picture: EXR, HDR, PFM, PNG, JPEG as pictures; texture: PNG, JPEG as
 /// textures; checkpoint.
 [[nodiscard]] const std::vector<Target>& targets();
 
