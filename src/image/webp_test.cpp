@@ -25,7 +25,8 @@ Bytes write_webp(const Bytes& rgba) {
 Bytes gradient() {
     Bytes rgba;
     for (int i = 0; i < 16 * 8; ++i)
-        for (const int value : {2 * i, 255 - i, 7 * i % 256, 128 + i}) rgba.push_back(static_cast<std::uint8_t>(value));
+        for (const int value : {2 * i, 255 - i, 7 * i % 256, 128 + i})
+            rgba.push_back(static_cast<std::uint8_t>(value));
     return rgba;
 }
 

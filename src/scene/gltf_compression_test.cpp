@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compressed meshes: what the packers of Draco and meshoptimizer make comes back, and damage ends in one clear line.
+// Compressed meshes: what the packers of Draco and meshoptimizer make comes back, and damage ends in one
+// clear line.
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gtest/gtest.h>
@@ -81,15 +82,17 @@ double area(const SceneData& scene) {
 // ---- EXT_meshopt_compression ----
 
 json packed_view(std::size_t buffer_view_bytes, const json& extension) {
-    return {{"buffer", 1}, {"byteLength", buffer_view_bytes}, {"extensions", {{"EXT_meshopt_compression", extension}}}};
+    return {{"buffer", 1},
+            {"byteLength", buffer_view_bytes},
+            {"extensions", {{"EXT_meshopt_compression", extension}}}};
 }
 
 /// The grid with positions and indices packed, over a fallback buffer that is not there.
 GltfBuilder meshopt_document(const Grid& grid) {
     GltfBuilder builder = mesh_document(0, 1);
     std::string vertices(meshopt_encodeVertexBufferBound(grid.vertices(), 12), '\0');
-    vertices.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(vertices.data()), vertices.size(),
-                                               grid.positions.data(), grid.vertices(), 12));
+    vertices.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(vertices.data()),
+                                               vertices.size(), grid.positions.data(), grid.vertices(), 12));
     std::string corners(meshopt_encodeIndexBufferBound(grid.corners.size(), grid.vertices()), '\0');
     corners.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(corners.data()), corners.size(),
                                              grid.corners.data(), grid.corners.size()));
@@ -107,8 +110,9 @@ GltfBuilder meshopt_document(const Grid& grid) {
                                                                      {"mode", "TRIANGLES"}}));
     builder.add("accessors",
                 {{"bufferView", 0}, {"componentType", 5126}, {"count", grid.vertices()}, {"type", "VEC3"}});
-    builder.add("accessors",
-                {{"bufferView", 1}, {"componentType", 5125}, {"count", grid.corners.size()}, {"type", "SCALAR"}});
+    builder.add(
+        "accessors",
+        {{"bufferView", 1}, {"componentType", 5125}, {"count", grid.corners.size()}, {"type", "SCALAR"}});
     builder.document["extensionsRequired"] = {"EXT_meshopt_compression"};
     builder.document["buffers"] = {
         {{"byteLength", builder.binary.size()},
@@ -190,8 +194,8 @@ std::string draco_bytes(const Grid& grid, int method) {
     const int position = soup.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
     for (std::size_t face = 0; face < grid.corners.size() / 3; ++face) {
         const auto corner = [&](std::size_t k) { return &grid.positions[3 * grid.corners[3 * face + k]]; };
-        soup.SetAttributeValuesForFace(position, draco::FaceIndex(static_cast<std::uint32_t>(face)), corner(0),
-                                       corner(1), corner(2));
+        soup.SetAttributeValuesForFace(position, draco::FaceIndex(static_cast<std::uint32_t>(face)),
+                                       corner(0), corner(1), corner(2));
     }
     const auto mesh = soup.Finalize();
     draco::Encoder encoder;
@@ -254,7 +258,8 @@ TEST(GltfDraco, DamageEndsInOneClearLine) {
         {with([](std::string& b) { b.replace(11, 2, "\xff\xff\xff\xff\xff\xff"); }), "the end of the data"},
         {set_json("/mode", 5), "primitives[0].mode: expected 4"},
         {set_json(extension + "/bufferView", 9), "KHR_draco_mesh_compression.bufferView"},
-        {set_json(extension + "/attributes/POSITION", 70), "the id of an attribute in the Draco data, found 70"},
+        {set_json(extension + "/attributes/POSITION", 70),
+         "the id of an attribute in the Draco data, found 70"},
         {set_json(extension + "/attributes/POSITION", -1), "attributes.\"POSITION\""},
         {set_json(extension + "/attributes/NORMAL", 0), "an attribute of the primitive, found none"},
         {set_json(extension + "/attributes", 3), "KHR_draco_mesh_compression.attributes"},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unpacking by Draco, which takes memory for as many points and faces as its data claim: so we read the claims first.
+// Unpacking by Draco, which takes memory for as many points and faces as its data claim: so we read the
+// claims first.
 #include "scene/gltf_draco.hpp"
 
 #include <draco/compression/decode.h>
@@ -16,7 +17,8 @@
 namespace relumine {
 namespace {
 
-constexpr std::size_t densest = 16;  // points or faces in one byte, far more than Draco reaches on smooth meshes
+constexpr std::size_t densest =
+    16;  // points or faces in one byte, far more than Draco reaches on smooth meshes
 constexpr std::size_t allowance = 4096;
 constexpr std::size_t most_attributes = 32;
 
@@ -68,7 +70,8 @@ void check_claims(std::span<const std::uint8_t> bytes, const std::string& where)
     if (geometry != 1 || method > 1) refuse(where, "a Draco mesh", "another geometry");
     if ((flags & 0x8000) != 0) refuse(where, "a Draco mesh without metadata", "metadata");
     if (method == 1) (void)header.byte();  // how the surface is walked
-    const std::uint64_t first = header.varint(), second = header.varint();  // faces and points, in either order
+    const std::uint64_t first = header.varint(),
+                        second = header.varint();  // faces and points, in either order
     if (header.failed) refuse(where, "the numbers of points and faces", "the end of the data");
     const std::size_t most = densest * bytes.size() + allowance;
     if (std::max(first, second) > most)
@@ -118,9 +121,11 @@ DracoPrimitive::Attribute read_attribute(const draco::Mesh& mesh, const draco::P
     for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
         float* const out = &attribute.values[components * i];
         const auto entry = source.mapped_index(draco::PointIndex(i));
-        if (entry.value() >= source.size() || !source.ConvertValue<float>(entry, source.num_components(), out))
+        if (entry.value() >= source.size()
+            || !source.ConvertValue<float>(entry, source.num_components(), out))
             refuse(where, "a value for every point", fmt::format("none for point {}", i));
-        for (std::size_t c = 0; c < components; ++c) out[c] = std::max(out[c] / unit, scale ? -1.0f : out[c] / unit);
+        for (std::size_t c = 0; c < components; ++c)
+            out[c] = std::max(out[c] / unit, scale ? -1.0f : out[c] / unit);
     }
     return attribute;
 }
@@ -136,7 +141,8 @@ void read_attributes(const GltfFile& file, const tinygltf::Primitive& primitive,
         if (accessor == primitive.attributes.end()) refuse(where, "an attribute of the primitive", "none");
         const auto id = static_cast<std::uint32_t>(ids.Get(name).GetNumberAsInt());
         const draco::PointAttribute* const source = mesh.GetAttributeByUniqueId(id);
-        if (source == nullptr) refuse(where, "the id of an attribute in the Draco data", fmt::format("{}", id));
+        if (source == nullptr)
+            refuse(where, "the id of an attribute in the Draco data", fmt::format("{}", id));
         out.attributes[name] =
             read_attribute(mesh, *source, file.model.accessors[to_size(accessor->second)], where);
     }
@@ -155,13 +161,15 @@ void read_corners(const draco::Mesh& mesh, const std::string& where, DracoPrimit
 
 }  // namespace
 
-std::optional<DracoPrimitive> unpack_gltf_primitive(const GltfFile& file, const tinygltf::Primitive& primitive,
+std::optional<DracoPrimitive> unpack_gltf_primitive(const GltfFile& file,
+                                                    const tinygltf::Primitive& primitive,
                                                     const std::string& place) {
     const auto it = primitive.extensions.find("KHR_draco_mesh_compression");
     if (it == primitive.extensions.end()) return std::nullopt;
     const std::string here = place + ".extensions.KHR_draco_mesh_compression", where = file.where(here);
     if (primitive.mode != TINYGLTF_MODE_TRIANGLES)
-        refuse(file.where(place + ".mode"), "4, triangles, where Draco packs them", fmt::format("{}", primitive.mode));
+        refuse(file.where(place + ".mode"), "4, triangles, where Draco packs them",
+               fmt::format("{}", primitive.mode));
     const auto mesh = decode(view_bytes(file, it->second.Get("bufferView").GetNumberAsInt()), where);
     DracoPrimitive out;
     out.points = mesh->num_points();

@@ -19,8 +19,8 @@ struct DracoPrimitive {
     std::vector<std::uint32_t> corners;           // three per triangle
 };
 
-/// Empty where the primitive is not compressed. The sizes that the packed data claim are checked against their length
-/// before Draco sees them. `place`: of the primitive, for messages. Throws SceneError.
+/// Empty where the primitive is not compressed. The sizes that the packed data claim are checked against
+/// their length before Draco sees them. `place`: of the primitive, for messages. Throws SceneError.
 [[nodiscard]] std::optional<DracoPrimitive> unpack_gltf_primitive(const GltfFile& file,
                                                                   const tinygltf::Primitive& primitive,
                                                                   const std::string& place);

@@ -28,7 +28,8 @@ class Places {
     [[nodiscard]] int accessor(const std::string& name) const {
         return attributes_.Has(name) ? attributes_.Get(name).GetNumberAsInt() : -1;
     }
-    /// Elements per attribute; the same for all. Only what stands in the file counts, not zeros without a buffer.
+    /// Elements per attribute; the same for all. Only what stands in the file counts, not zeros without a
+    /// buffer.
     [[nodiscard]] std::size_t count(std::size_t most) const;
     [[nodiscard]] std::vector<float> values(const std::string& name, int components) const {
         const int index = accessor(name);
@@ -46,13 +47,14 @@ std::size_t Places::count(std::size_t most) const {
         if (accessor(name) < 0) continue;
         const auto& a = file_.model.accessors[to_size(accessor(name))];
         const std::string where = file_.where(fmt::format("{}.{}", place_, name));
-        if (a.bufferView < 0) throw SceneError{expected_found(where, "an accessor with a bufferView", "none")};
+        if (a.bufferView < 0)
+            throw SceneError{expected_found(where, "an accessor with a bufferView", "none")};
         if (found != 0 && a.count != found)
             throw SceneError{expected_found(where, fmt::format("{} elements, as the others have", found),
                                             fmt::format("{}", a.count))};
         if (a.count > most)
-            throw SceneError{expected_found(where, fmt::format("at most {} places in all", max_gltf_places),
-                                            "more")};
+            throw SceneError{
+                expected_found(where, fmt::format("at most {} places in all", max_gltf_places), "more")};
         found = a.count;
     }
     return found;

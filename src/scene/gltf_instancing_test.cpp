@@ -91,7 +91,8 @@ TEST(GltfInstancing, DamageEndsInOneClearLine) {
         builder.add("accessors", {{"componentType", 5126}, {"count", 2000000000}, {"type", "VEC3"}});
     expect(builder, "TRANSLATION: expected an accessor with a bufferView, found none");
     builder = two_places();
-    builder.document["accessors"][attributes(builder)["TRANSLATION"].get<std::size_t>()]["count"] = 2000000000;
+    builder.document["accessors"][attributes(builder)["TRANSLATION"].get<std::size_t>()]["count"] =
+        2000000000;
     expect(builder, "expected at most 8388608 places in all");
 }
 

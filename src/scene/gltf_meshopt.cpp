@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unpacking by meshoptimizer, whose decoders are made for untrusted input but believe the sizes that they are told.
+// Unpacking by meshoptimizer, whose decoders are made for untrusted input but believe the sizes that they are
+// told.
 #include "scene/gltf_meshopt.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,8 @@
 namespace relumine {
 namespace {
 
-constexpr std::size_t densest = 64;  // bytes out of one: a bit for every group of 16 equal differences, in pairs
+constexpr std::size_t densest =
+    64;  // bytes out of one: a bit for every group of 16 equal differences, in pairs
 constexpr std::size_t max_unpacked_bytes = std::size_t{8} << 30;  // all views together
 
 /// The extension's object of one buffer view.
@@ -71,7 +73,8 @@ void PackedView::check_mode() const {
         refuse(".mode", "ATTRIBUTES, TRIANGLES or INDICES", quote(mode_));
     if (attributes ? stride_ % 4 != 0 : stride_ != 2 && stride_ != 4)
         refuse(".byteStride", attributes ? "a multiple of 4" : "2 or 4", fmt::format("{}", stride_));
-    if (mode_ == "TRIANGLES" && count_ % 3 != 0) refuse(".count", "a multiple of 3", fmt::format("{}", count_));
+    if (mode_ == "TRIANGLES" && count_ % 3 != 0)
+        refuse(".count", "a multiple of 3", fmt::format("{}", count_));
     const bool fits = filter_ == "NONE" || (filter_ == "OCTAHEDRAL" && (stride_ == 4 || stride_ == 8))
                       || (filter_ == "QUATERNION" && stride_ == 8) || filter_ == "EXPONENTIAL";
     if (!fits || (!attributes && filter_ != "NONE"))
@@ -85,7 +88,8 @@ void PackedView::check_size(std::size_t packed, std::size_t& budget) const {
         refuse("", fmt::format("the {} bytes of the view", view_length_),
                fmt::format("{} elements of {} bytes", count_, stride_));
     if (bytes > densest * packed)
-        refuse(".count", fmt::format("at most {}, what {} bytes can hold", densest * packed / stride_, packed),
+        refuse(".count",
+               fmt::format("at most {}, what {} bytes can hold", densest * packed / stride_, packed),
                fmt::format("{}", count_));
     if (bytes > budget)
         refuse("", fmt::format("at most {} unpacked bytes in all", max_unpacked_bytes), "more");

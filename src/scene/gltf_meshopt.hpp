@@ -6,8 +6,8 @@
 
 namespace relumine {
 
-/// Unpacks every compressed buffer view into `file.unpacked`. The size of what is unpacked is checked against that of
-/// the packed bytes before memory is taken. Throws SceneError.
+/// Unpacks every compressed buffer view into `file.unpacked`. The size of what is unpacked is checked against
+/// that of the packed bytes before memory is taken. Throws SceneError.
 void unpack_gltf_views(GltfFile& file);
 
 }  // namespace relumine

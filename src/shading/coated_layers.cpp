@@ -121,7 +121,8 @@ LocalDir sample_part(const CoatedLayers& b, LocalDir w_out, const Shares& s, Bsd
     float beyond = u.lobe - s.delta;
     if (!b.clearcoat_smooth && (beyond -= s.clearcoat) < 0)
         return sample_reflection(b.clearcoat_ggx, w_out, u.direction);
-    if (!b.base.smooth && (beyond -= s.specular) < 0) return sample_reflection(b.base.ggx, w_out, u.direction);
+    if (!b.base.smooth && (beyond -= s.specular) < 0)
+        return sample_reflection(b.base.ggx, w_out, u.direction);
     if ((beyond -= s.sheen) < 0) return uniform_hemisphere(u.direction);
     return cosine_hemisphere(u.direction);
 }
@@ -179,7 +180,8 @@ CoatedLayers without_coat_delta(const CoatedLayers& b) {
 CoatedAlbedos coated_albedos(const CoatedLayers& b, LocalDir w_out) {
     const Through t = through(b, cos_theta(w_out));
     const float sheen = is_black(b.sheen) ? 0.0f : sheen_albedo(cos_theta(w_out), b.sheen_alpha);
-    return {b.base.diffuse * (t.diffuse() * mean_transmittance(b)), b.sheen * (sheen * t.clearcoat), t.lobes()};
+    return {b.base.diffuse * (t.diffuse() * mean_transmittance(b)), b.sheen * (sheen * t.clearcoat),
+            t.lobes()};
 }
 
 CoatedLayers layered(CoatedLayers layers) {
