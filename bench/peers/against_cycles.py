@@ -26,7 +26,6 @@ SPHERES = {  # name: inputs of the Principled BSDF
 
 def material(name, inputs, texture=None):
     made = bpy.data.materials.new(name)
-    made.use_nodes = True
     nodes, links = made.node_tree.nodes, made.node_tree.links
     bsdf = nodes["Principled BSDF"]
     bsdf.distribution = "GGX"  # single scattering, as ours
@@ -57,9 +56,12 @@ def placed(add, name, mat, **where):
     return thing
 
 
-def build():
+def build(size):
     """Floor, wall, spheres of each material, instanced cubes; a point light, a sun and a glowing panel."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
+    render = bpy.context.scene.render  # its aspect goes into the exported camera
+    render.resolution_x = render.resolution_y = size
+    render.resolution_percentage = 100
     mesh = bpy.ops.mesh
     placed(mesh.primitive_plane_add, "floor", material("floor", {"Roughness": 1, "Specular IOR Level": 0}, checker()),
            size=12)
@@ -106,7 +108,7 @@ def build():
 def export(path, args):
     bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLB", export_lights=True, export_cameras=True,
                               export_import_convert_lighting_mode="COMPAT",  # watts over 4 pi, not lumens
-                              export_draco_mesh_compression_enable=args.draco, export_gpu_instances=args.instances,
+                              export_draco_mesh_compression_enable=args.draco,
                               export_image_format="WEBP" if args.webp else "AUTO")
 
 
@@ -140,8 +142,6 @@ def render_cycles(args):
     world = bpy.data.worlds.new("dark")
     world.color = (0, 0, 0)
     scene.world = world
-    scene.render.resolution_x = scene.render.resolution_y = args.size
-    scene.render.resolution_percentage = 100
     if args.threads:
         scene.render.threads_mode, scene.render.threads = "FIXED", args.threads
     scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
@@ -218,7 +218,7 @@ def main():
         raise SystemExit(f"--size: expected a multiple of --block = {args.block}, found {args.size}")
     args.out = args.out.resolve()
     args.out.mkdir(parents=True, exist_ok=True)
-    build()
+    build(args.size)
     export(args.out / "scene.glb", args)
     ours = render_relumine(args.out / "scene.glb", args)
     theirs = render_cycles(args)

@@ -30,6 +30,19 @@ MetallicRoughness plastic(Spectrum diffuse, float alpha) {
     return {diffuse, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, ggx(alpha)};
 }
 
+CoatedLayers coated(const MetallicRoughness& base, float clearcoat, float alpha) {
+    CoatedLayers layers;
+    layers.base = base;
+    layers.clearcoat = clearcoat;
+    layers.clearcoat_ggx = ggx(alpha);
+    return layers;
+}
+CoatedLayers with_sheen(CoatedLayers layers, Spectrum color, float alpha) {
+    layers.sheen = color;
+    layers.sheen_alpha = alpha;
+    return layers;
+}
+
 struct NamedBsdf {
     const char* name;
     Bsdf bsdf;
@@ -51,13 +64,13 @@ const std::vector<NamedBsdf>& rough_bsdfs() {
                                             Spectrum{0.5f}, ggx(0.2f)}},
         {"coated diffuse", CoatedDiffuse{Spectrum{0.4f, 0.3f, 0.1f}, 1.5f, ggx(0.25f)}},
         {"diffuse transmission", DiffuseTransmission{Spectrum{0.3f}, Spectrum{0.5f, 0.4f, 0.2f}}},
-        {"clear coat", layered({plastic(Spectrum{0.7f, 0.4f, 0.2f}, 0.4f), 1, ggx(0.15f)})},
+        {"clear coat", layered(coated(plastic(Spectrum{0.7f, 0.4f, 0.2f}, 0.4f), 1, 0.15f))},
         {"clear coat on metal",
-         layered({{{}, {}, {}, Spectrum{0.9f, 0.6f, 0.3f}, Spectrum{1}, ggx(0.3f)}, 0.7f, ggx(0.12f)})},
-        {"sheen", layered({plastic(Spectrum{0.5f, 0.3f, 0.2f}, 0.5f), 0, ggx(1), false, true,
-                           Spectrum{0.9f, 0.6f, 0.3f}, 0.3f})},
-        {"sheen under coat", layered({plastic(Spectrum{0.3f}, 0.6f), 0.8f, ggx(0.2f), false, true,
-                                      Spectrum{0.5f, 0.8f, 0.9f}, 0.6f})},
+         layered(coated({{}, {}, {}, Spectrum{0.9f, 0.6f, 0.3f}, Spectrum{1}, ggx(0.3f)}, 0.7f, 0.12f))},
+        {"sheen", layered(with_sheen(coated(plastic(Spectrum{0.5f, 0.3f, 0.2f}, 0.5f), 0, 1),
+                                     Spectrum{0.9f, 0.6f, 0.3f}, 0.3f))},
+        {"sheen under coat", layered(with_sheen(coated(plastic(Spectrum{0.3f}, 0.6f), 0.8f, 0.2f),
+                                                Spectrum{0.5f, 0.8f, 0.9f}, 0.6f))},
     };
     return all;
 }
@@ -265,16 +278,15 @@ struct Extremes {
 TEST(Bsdf, LayersOverWhiteReflectNoMoreThanArrives) {
     Extremes coats, clearcoats, sheens;
     for (const float alpha : {0.002f, 0.03f, 0.15f, 0.4f, 1.0f}) {
-        CoatedLayers white{plastic(Spectrum{1}, alpha)};
+        CoatedLayers white = coated(plastic(Spectrum{1}, alpha), 0, 1);
         coats.add(layered(white));
         white.clearcoat = 1;
         for (const float over : {0.004f, 0.3f}) {
             white.clearcoat_ggx = ggx(over);
             clearcoats.add(layered(white));
         }
-        CoatedLayers cloth{plastic(Spectrum{1}, 0.5f)};
-        cloth.sheen = Spectrum{1};
-        cloth.sheen_alpha = std::max(alpha, 0.01f);
+        const CoatedLayers cloth =
+            with_sheen(coated(plastic(Spectrum{1}, 0.5f), 0, 1), Spectrum{1}, std::max(alpha, 0.01f));
         sheens.add(layered(cloth));
     }
     EXPECT_LT(coats.most, 1.001);
@@ -286,7 +298,7 @@ TEST(Bsdf, LayersOverWhiteReflectNoMoreThanArrives) {
 }
 
 TEST(Bsdf, FurnaceCatchesCoatsThatTakeNothing) {
-    CoatedLayers white{plastic(Spectrum{1}, 0.3f), 1, ggx(0.1f)};
+    CoatedLayers white = coated(plastic(Spectrum{1}, 0.3f), 1, 0.1f);
     white.base.coat_f0 = white.base.coat_f90 = {};  // the base does not lose what the coat reflects
     Extremes gained;
     gained.add(layered(white));
@@ -304,7 +316,8 @@ TEST(Bsdf, GrazingAlbedoIsAnUpperBoundOfTheLobes) {
 }
 
 TEST(Bsdf, SmoothClearCoatSplitsIntoDeltaAndTheRest) {
-    CoatedLayers lacquer{plastic(Spectrum{0.8f, 0.3f, 0.2f}, 0.3f), 1, ggx(smooth_alpha), true};
+    CoatedLayers lacquer = coated(plastic(Spectrum{0.8f, 0.3f, 0.2f}, 0.3f), 1, smooth_alpha);
+    lacquer.clearcoat_smooth = true;
     lacquer = layered(lacquer);
     const LocalDir w_out = direction(0.5f, 0.4f);
     double delta = 0, rest = 0;

@@ -47,7 +47,10 @@ TEST(Reflectance, PartsAddUpToTheWhole) {
 }
 
 TEST(Reflectance, PartsOfCoatedLayersAddUpToTheWhole) {
-    CoatedLayers layers{layered(0.5f), 0.8f, {0.3f, Masking::correlated}};
+    CoatedLayers layers;
+    layers.base = layered(0.5f);
+    layers.clearcoat = 0.8f;
+    layers.clearcoat_ggx = {0.3f, Masking::correlated};
     layers.sheen = {0.3f, 0.2f, 0.1f};
     layers.sheen_alpha = 0.4f;
     for (const float cosine : {0.4f, 0.77f, 0.99f}) {
