@@ -92,6 +92,15 @@ void check_buffer_views(const GltfFile& file) {
     }
 }
 
+/// TinyGLTF refuses indices without a buffer view, which those that Draco packs have no need of.
+void drop_packed_indices(json& document) {
+    if (!document.contains("meshes")) return;
+    for (json& mesh : document["meshes"])
+        for (json& primitive : mesh["primitives"])
+            if (primitive.contains(json::json_pointer{"/extensions/KHR_draco_mesh_compression"}))
+                primitive.erase("indices");
+}
+
 /// The message's first line.
 std::string first_line(const std::string& text) { return quote(text.substr(0, text.find('\n'))); }
 
@@ -118,6 +127,7 @@ GltfFile read_gltf_file(const std::string& path) {
     const json images = document.value("images", json::array());
     document.erase("buffers");
     document.erase("images");
+    drop_packed_indices(document);
     file.model = parse_model(document, path);
     load_buffers(file, buffers);
     load_images(file, images);

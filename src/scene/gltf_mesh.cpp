@@ -118,8 +118,7 @@ std::vector<Triangle> read_triangles(const PrimitiveRef& ref, std::size_t vertic
     }
 }
 
-void spend(GltfBudget& budget, const PrimitiveRef& ref, int accessor) {
-    const std::size_t count = accessor < 0 ? 0 : ref.file.model.accessors[to_size(accessor)].count;
+void spend(GltfBudget& budget, const PrimitiveRef& ref, std::size_t count) {
     if (count > budget.elements)
         throw SceneError{
             expected_found(ref.file.where(ref.place), "at most 2^30 vertices and indices in all", "more")};
@@ -128,15 +127,19 @@ void spend(GltfBudget& budget, const PrimitiveRef& ref, int accessor) {
 
 Mesh read_primitive(PrimitiveRef ref, GltfBudget& budget) {
     const int position = attribute(ref, "POSITION");
-    spend(budget, ref, position);
-    spend(budget, ref, ref.primitive.indices);
-    const std::size_t vertices = ref.file.model.accessors[to_size(position)].count;
+    const auto count = [&](int accessor) {
+        return accessor < 0 ? 0 : ref.file.model.accessors[to_size(accessor)].count;
+    };
+    const std::size_t vertices = count(position);
+    spend(budget, ref, vertices);
+    spend(budget, ref, count(ref.primitive.indices));
     const auto packed = unpack_gltf_primitive(ref.file, ref.primitive, ref.place);
     if (packed && packed->points != vertices)
         throw SceneError{expected_found(ref.file.where(ref.place),
                                         fmt::format("{} points in the Draco data, as POSITION has", vertices),
                                         fmt::format("{}", packed->points))};
     if (packed) ref.packed = &*packed;
+    if (packed) spend(budget, ref, packed->corners.size());
     const int material = ref.primitive.material;
     Mesh mesh;
     mesh.positions = read_attribute<Vec3>(ref, "POSITION", vertices);
