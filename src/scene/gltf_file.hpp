@@ -10,6 +10,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -29,6 +30,7 @@ struct GltfFile {
     GltfContainer container;
     std::vector<std::vector<std::uint8_t>> loaded;
     std::unique_ptr<SceneFiles> files;  // for whatever has a URI
+    std::map<int, std::vector<std::uint8_t>> unpacked;  // buffer views that were compressed
     std::vector<std::string> warnings;
 
     /// "kitchen.glb: place".
