@@ -294,7 +294,7 @@ TEST(CliCompare, PrintsTheNumbers) {
     const CommandResult text = pair.compare({});
     EXPECT_EQ(text.exit_code, 0);
     for (const char* word :
-         {"relative L1    0.25\n", "RMSE ", "relMSE ", "mean ratio     1.25\n", "blocks of 16"})
+         {"relative L1    0.25\n", "RMSE ", "relMSE ", "FLIP ", "mean ratio     1.25\n", "blocks of 16"})
         EXPECT_NE(text.out.find(word), std::string::npos) << word << "\n" << text.out;
     const json numbers = json::parse(pair.compare({"--json", "--block", "1"}).out);
     EXPECT_NEAR(numbers.at("relative_l1").get<double>(), 0.25, 1e-6);
@@ -304,15 +304,14 @@ TEST(CliCompare, PrintsTheNumbers) {
 
 TEST(CliCompare, EveryThresholdSpeaksForItself) {
     const Pair pair(1, 1.5f);
-    const std::vector<std::pair<std::string, std::string>> thresholds{{"--max-relative-l1", "relative L1"},
-                                                                      {"--max-rmse", "RMSE"},
-                                                                      {"--max-relmse", "relMSE"},
-                                                                      {"--mean-tolerance", "mean ratio"},
-                                                                      {"--max-block", "worst block"}};
-    std::vector<std::string> all;
+    const std::vector<std::pair<std::string, std::string>> thresholds{
+        {"--max-relative-l1", "relative L1"}, {"--max-rmse", "RMSE"},
+        {"--max-relmse", "relMSE"},           {"--max-flip", "FLIP"},
+        {"--mean-tolerance", "mean ratio"},   {"--max-block", "worst block"}};
+    std::vector<std::string> all{"--exposure", "-2"};  // FLIP cuts at 1
     for (const auto& [option, words] : thresholds) {
         EXPECT_EQ(pair.compare({option, "1"}).exit_code, 0);
-        expect_one_line(pair.compare({option, "0.01"}), 1, words);
+        expect_one_line(pair.compare({option, "0.01", "--exposure", "-2"}), 1, words);
         expect_one_line(pair.compare({option, "-1"}), 2, option);
         all.insert(all.end(), {option, "0.01"});
     }

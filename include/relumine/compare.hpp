@@ -82,6 +82,22 @@ struct BlockComparison {
                                              const Image* reference_standard_error = nullptr,
                                              const Image* image_variance = nullptr);
 
+/// How pictures are shown and looked at.
+struct FlipOptions {
+    double exposure = 0;            // stops; then radiance is cut to [0, 1]
+    double pixels_per_degree = 67;  // of the eye: a 4K screen of 0.7 m seen from 0.7 m
+};
+
+/// The difference that a viewer sees who alternates between two pictures: 0 none, 1 the most [Andersson20].
+struct Flip {
+    double mean = 0;
+    std::vector<float> pixels;  // width × height, top row first
+};
+
+/// Throws ImageError when the sizes differ or a picture itself is missing, SettingsError for a bad option.
+/// NaN counts as black.
+[[nodiscard]] Flip flip(const Image& image, const Image& reference, const FlipOptions& options = {});
+
 /// A picture of the signed difference of luminance: red where the image is brighter, blue where it is darker,
 /// white where they agree, green where a pixel is not finite. Full colour means ±`scale`; `scale` ≤ 0 takes
 /// the 99th percentile of |difference|. The scale used stands in the metadata as "difference_scale". Throws

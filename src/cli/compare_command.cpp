@@ -17,13 +17,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Thresholds {
-    std::optional<double> relative_l1, rmse, relmse, mean, block;  // largest that pass
+    std::optional<double> relative_l1, rmse, relmse, mean, block, flip;  // largest that pass
 };
 
 struct Options {
     std::string image, reference;
     std::string difference_file;  // "": none
     CompareOptions compare;
+    FlipOptions flip;
     Thresholds max;
     bool json = false;
 
@@ -48,6 +49,7 @@ void add_threshold_options(CLI::App& app, Thresholds& max) {
     add_limit(app, {"--max-relmse", "X", "of the mean of difference^2 / (reference^2 + 0.01)"}, max.relmse);
     add_limit(app, {"--mean-tolerance", "X", "of |sum image / sum reference - 1|"}, max.mean);
     add_limit(app, {"--max-block", "X", "of the relative difference of block means, worst block"}, max.block);
+    add_limit(app, {"--max-flip", "X", "of the mean of FLIP, 0 to 1"}, max.flip);
 }
 
 void add_block_options(CLI::App& app, Options& options) {
@@ -69,8 +71,8 @@ void add_block_options(CLI::App& app, Options& options) {
     add_limit(app, {"--exclude-above", "X", "leave out blocks that are brighter, and their neighbours"},
               tolerance.exclude_above)
         ->needs(blocks);
-    for (const char* per_pixel :
-         {"--max-relative-l1", "--max-rmse", "--max-relmse", "--difference", "--block"})
+    for (const char* per_pixel : {"--max-relative-l1", "--max-rmse", "--max-relmse", "--max-flip",
+                                  "--exposure", "--difference", "--block"})
         blocks->excludes(app.get_option(per_pixel));
 }
 
@@ -80,6 +82,7 @@ void add_options(CLI::App& app, Options& options) {
     app.option_defaults()->group("Output");
     add_number(app, {"--block", "N", "side of the blocks in pixels"}, options.compare.block_size,
                std::to_string(options.compare.block_size));
+    add_number(app, {"--exposure", "EV", "stops, for FLIP"}, options.flip.exposure, "0");
     add_text(app, {"--difference", "FILE", "a picture: red where IMAGE is brighter, blue where darker"},
              options.difference_file);
     app.add_flag("--json", options.json, "the numbers as a JSON object");
@@ -98,7 +101,7 @@ bool all_finite(std::size_t non_finite_pixels) {
     return within("pixels that are not finite", static_cast<double>(non_finite_pixels), 0);
 }
 
-Json comparison_json(const Comparison& c, int block_size) {
+Json comparison_json(const Comparison& c, double flip, int block_size) {
     return {{"compared_pixels", c.compared_pixels},
             {"non_finite_pixels", c.non_finite_pixels},
             {"relative_l1", c.relative_l1},
@@ -106,6 +109,7 @@ Json comparison_json(const Comparison& c, int block_size) {
             {"relmse", c.relmse},
             {"mean_ratio", c.mean_ratio},
             {"max_abs_difference", c.max_abs_difference},
+            {"flip", flip},
             {"block_size", block_size},
             {"blocks", c.blocks},
             {"block_difference_median", c.block_difference_median},
@@ -115,12 +119,13 @@ Json comparison_json(const Comparison& c, int block_size) {
             {"worst_block", {c.worst_block.x0, c.worst_block.y0, c.worst_block.x1, c.worst_block.y1}}};
 }
 
-std::string comparison_text(const Comparison& c, const CompareOptions& options) {
+std::string comparison_text(const Comparison& c, double flip, const CompareOptions& options) {
     std::string text;
     text += fmt::format("relative L1    {:.6g}\n", c.relative_l1);
     text += fmt::format("RMSE           {:.6g}\n", c.rmse);
     text += fmt::format("relMSE         {:.6g}\n", c.relmse);
     text += fmt::format("mean ratio     {:.6g}\n", c.mean_ratio);
+    text += fmt::format("FLIP           {:.6g}\n", flip);
     text += fmt::format("worst pixel    {:.6g} off\n", c.max_abs_difference);
     text += fmt::format(
         "blocks of {:<4} {:.4g} off in the median, {:.4g} at 95 %, {:.4g} at worst (pixels {},{} to {},{}); "
@@ -131,23 +136,25 @@ std::string comparison_text(const Comparison& c, const CompareOptions& options) 
     return text;
 }
 
-bool passes(const Comparison& c, const Thresholds& max) {
+bool passes(const Comparison& c, double flip, const Thresholds& max) {
     bool pass = all_finite(c.non_finite_pixels);
     pass &= within("relative L1", c.relative_l1, max.relative_l1);
     pass &= within("RMSE", c.rmse, max.rmse);
     pass &= within("relMSE", c.relmse, max.relmse);
     pass &= within("|mean ratio - 1|", std::abs(c.mean_ratio - 1), max.mean);
     pass &= within("worst block", c.block_difference_max, max.block);
+    pass &= within("FLIP", flip, max.flip);
     return pass;
 }
 
 bool compare_pixels(const Options& options, const Image& image, const Image& reference) {
     const Comparison c = compare_images(image, reference, options.compare);
+    const double seen = flip(image, reference, options.flip).mean;
     if (!options.difference_file.empty())
         write_image(signed_difference(image, reference), options.difference_file);
-    print(options.json ? json_text(comparison_json(c, options.compare.block_size), 2) + "\n"
-                       : comparison_text(c, options.compare));
-    return passes(c, options.max);
+    print(options.json ? json_text(comparison_json(c, seen, options.compare.block_size), 2) + "\n"
+                       : comparison_text(c, seen, options.compare));
+    return passes(c, seen, options.max);
 }
 
 Json blocks_json(const BlockComparison& c) {
