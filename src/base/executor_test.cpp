@@ -17,12 +17,17 @@
 namespace relumine {
 namespace {
 
+/// oneTBB's is left out where ThreadSanitizer could not follow it.
+std::vector<Executor> executors() {
+    if (default_executor() == Executor::threads) return {Executor::threads};
+    return {Executor::tbb, Executor::threads};
+}
+
 class Executors : public testing::TestWithParam<Executor> {};
 
-INSTANTIATE_TEST_SUITE_P(Both, Executors, testing::Values(Executor::tbb, Executor::threads),
-                         [](const auto& param) {
-                             return std::string(param.param == Executor::tbb ? "Tbb" : "Threads");
-                         });
+INSTANTIATE_TEST_SUITE_P(Each, Executors, testing::ValuesIn(executors()), [](const auto& param) {
+    return std::string(param.param == Executor::tbb ? "Tbb" : "Threads");
+});
 
 TEST_P(Executors, CallEveryPieceOnce) {
     for (const int threads : {1, 2, 7})
@@ -71,9 +76,8 @@ TEST_P(Executors, RethrowTheErrorOfTheLowestPieceAfterAllAreDone) {
 TEST_P(Executors, MayBeCalledInsideEachOtherAndByManyAtOnce) {
     std::atomic<int> calls = 0;
     const auto nested = [&] {
-        parallel_for(GetParam(), 3, 10, [&](std::size_t) {
-            parallel_for(GetParam(), 2, 10, [&](std::size_t) { ++calls; });
-        });
+        parallel_for(GetParam(), 3, 10,
+                     [&](std::size_t) { parallel_for(GetParam(), 2, 10, [&](std::size_t) { ++calls; }); });
     };
     {
         std::jthread other(nested);

@@ -42,10 +42,10 @@ std::vector<Channel> halved_channels(const std::vector<Channel>& from, std::size
 
 ByteImage halved(const ByteImage& image) {
     const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
-    return {(image.width + 1) / 2, (image.height + 1) / 2,
-            image.rgba8.empty() ? std::vector<std::uint8_t>{} : halved_channels(image.rgba8, width, height),
-            image.rgba16.empty() ? std::vector<std::uint16_t>{}
-                                 : halved_channels(image.rgba16, width, height)};
+    return {
+        (image.width + 1) / 2, (image.height + 1) / 2,
+        image.rgba8.empty() ? std::vector<std::uint8_t>{} : halved_channels(image.rgba8, width, height),
+        image.rgba16.empty() ? std::vector<std::uint16_t>{} : halved_channels(image.rgba16, width, height)};
 }
 
 void TextureBudget::add(std::vector<ByteImage>& images, std::size_t i) {
@@ -57,10 +57,10 @@ void TextureBudget::add(std::vector<ByteImage>& images, std::size_t i) {
 
 void TextureBudget::lower_limit(std::vector<ByteImage>& images) {
     if (longest_side_ == 1)
-        throw SceneError{expected_found("texture limit",
-                                        fmt::format("at least {} bytes for {} textures of one texel", bytes_,
-                                                    images.size()),
-                                        fmt::format("{}", limit_))};
+        throw SceneError{expected_found(
+            "texture limit",
+            fmt::format("at least {} bytes for {} textures of one texel", bytes_, images.size()),
+            fmt::format("{}", limit_))};
     longest_side_ /= 2;
     has_halved_ = true;
     bytes_ = 0;
