@@ -31,7 +31,7 @@ std::string error_of(const std::string& path) {
 
 constexpr Damage damages[] = {
     {"not_closed", "<shape type='sphere'>", "3:3: expected well-formed XML"},
-    {"text", "hello", "expected an element, found"},
+    {"text", "hello", "1:24: expected an element, found"},
     {"unknown_tag", "<shap type='sphere'/>",
      "2:2: expected an object, a value or a reference, found <shap> (did you mean \"shape\"?)"},
     {"no_type", "<shape/>", "2:2: expected <shape type=…>, found no type"},
@@ -239,7 +239,7 @@ TEST_P(MitsubaDamage, IsRefusedWithItsPlace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MitsubaDamage, ::testing::ValuesIn(damages),
-                         [](const auto& info) { return std::string{info.param.name}; });
+                         [](const auto& test) { return std::string{test.param.name}; });
 
 TEST(MitsubaDamage, OfTheWholeFile) {
     const TempFolder folder;
