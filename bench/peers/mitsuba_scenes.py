@@ -53,6 +53,19 @@ SCENES = {
 <emitter type="envmap"><string name="filename" value="sky.exr"/><float name="scale" value="1.5"/>
   <transform name="to_world"><rotate y="1" angle="70"/></transform></emitter></scene>""",
 }
+BALL = """<shape type="sphere"><point name="center" x="-.6" y=".2" z="0"/><float name="radius" value=".7"/>
+  <bsdf type="roughdielectric"><string name="distribution" value="ggx"/><float name="alpha" value=".2"/></bsdf></shape>
+<emitter type="constant"/><emitter type="spot"><transform name="to_world"><lookat origin="2, 4, 2" target="0, 0, 0"
+  up="0, 1, 0"/></transform><float name="cutoff_angle" value="12"/><float name="beam_width" value="12"/>
+  <rgb name="intensity" value="20 10 10"/></emitter></scene>"""
+SCENES["orthographic"] = HEAD.replace('"perspective"', '"orthographic"').replace('<float name="fov" value="45"/>', "").replace(
+    '<lookat', '<scale x="2" y="2"/><lookat') + BALL
+SCENES["lens"] = HEAD.replace('"perspective"', '"thinlens"').replace(
+    '<float name="fov" value="45"/>', '<float name="fov" value="45"/><float name="aperture_radius" value=".3"/>'
+    '<float name="focus_distance" value="3"/>') + BALL
+SCENES["shifted"] = HEAD.replace(
+    '<float name="fov" value="45"/>', '<float name="fov" value="45"/><float name="principal_point_offset_x" value=".1"/>'
+    '<float name="principal_point_offset_y" value="-.2"/>') + BALL
 
 
 def write_sky(path):
@@ -81,6 +94,7 @@ def main():
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--limit", type=float, default=0.01, help="largest difference of a block, beside its noise")
+    parser.add_argument("--only", default="", help="the scene of that name")
     parser.add_argument("--out", help="folder for the pictures of both, as PNG")
     args = parser.parse_args()
     mi.set_variant("scalar_rgb")
@@ -89,6 +103,8 @@ def main():
         folder = pathlib.Path(scratch)
         write_sky(folder / "sky.exr")
         for name, text in SCENES.items():
+            if args.only not in ("", name):
+                continue
             file = folder / f"{name}.xml"
             file.write_text(text)
             scene = mi.load_file(str(file))
