@@ -14,9 +14,9 @@ namespace relumine {
 namespace {
 
 const std::vector<std::string> bsdf_types{
-    "blendbsdf", "bumpmap",   "conductor",  "dielectric",     "diffuse",        "mask",         "normalmap",
-    "null",      "plastic",   "principled", "principledthin", "roughconductor", "roughdielectric",
-    "roughplastic", "thindielectric", "twosided"};
+    "blendbsdf",       "bumpmap",      "conductor",      "dielectric", "diffuse",        "mask",
+    "normalmap",       "null",         "plastic",        "principled", "principledthin", "roughconductor",
+    "roughdielectric", "roughplastic", "thindielectric", "twosided"};
 
 float conductor_f0(float eta, float k) {
     return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
@@ -48,7 +48,9 @@ double MitsubaMaterials::relative_ior(MitsubaProperties& p, const char* fallback
         if (element && element->tag != "string") return p.number(name, 1);
         const std::string material = element ? element->attribute("value") : otherwise;
         const std::optional<double> ior = mitsuba_ior(material);
-        if (!ior) p.refuse(name, "the name of a substance", quote(material) + did_you_mean(material, mitsuba_ior_names()));
+        if (!ior)
+            p.refuse(name, "the name of a substance",
+                     quote(material) + did_you_mean(material, mitsuba_ior_names()));
         return *ior;
     };
     const double inside = read("int_ior", fallback), outside = read("ext_ior", "air");
@@ -60,7 +62,8 @@ double MitsubaMaterials::relative_ior(MitsubaProperties& p, const char* fallback
 
 void MitsubaMaterials::read_alpha(MitsubaProperties& p, MitsubaDraft& draft) {
     if (p.choice("distribution", {"beckmann", "ggx"}) == "beckmann")
-        p.warn(fmt::format("distribution \"beckmann\" of {} is read as \"ggx\" of the same alpha", quote(p.object().type)));
+        p.warn(fmt::format("distribution \"beckmann\" of {} is read as \"ggx\" of the same alpha",
+                           quote(p.object().type)));
     p.ignore({"sample_visible"});
     draft.alpha = textures_.number(p, "alpha", 0.1);
     if (!p.find("alpha_u") && !p.find("alpha_v")) return;
@@ -96,17 +99,20 @@ void MitsubaMaterials::conductor(MitsubaProperties& p, MitsubaDraft& draft) {
     if (p.object().type == "roughconductor") read_alpha(p, draft);
     const std::string name = p.string("material", "none");
     std::optional<Spectrum> f0 = mitsuba_metal(name);
-    if (!f0) p.refuse("material", "the name of a metal", quote(name) + did_you_mean(name, mitsuba_metal_names()));
+    if (!f0)
+        p.refuse("material", "the name of a metal", quote(name) + did_you_mean(name, mitsuba_metal_names()));
     if (p.find("eta") || p.find("k")) {
         if (name != "none") p.refuse("material", "either \"material\" or \"eta\" and \"k\"", "both");
         const PbrtNodeRef eta = textures_.color(p, "eta", {}, MitsubaColorUse::unbounded);
         const PbrtNodeRef k = textures_.color(p, "k", Spectrum{1}, MitsubaColorUse::unbounded);
-        if (!is_constant(eta) || !is_constant(k)) p.refuse("eta", "colours for \"eta\" and \"k\"", "a texture");
+        if (!is_constant(eta) || !is_constant(k))
+            p.refuse("eta", "colours for \"eta\" and \"k\"", "a texture");
         const Spectrum n = eta->value, a = k->value;
         f0 = Spectrum{conductor_f0(n.r, a.r), conductor_f0(n.g, a.g), conductor_f0(n.b, a.b)};
     }
     if (std::min({f0->r, f0->g, f0->b}) < 0.999f)
-        p.warn(fmt::format("the Fresnel reflectance of {} is Schlick's: exact at normal incidence", quote(p.object().type)));
+        p.warn(fmt::format("the Fresnel reflectance of {} is Schlick's: exact at normal incidence",
+                           quote(p.object().type)));
     draft.color = textures_.color(p, "specular_reflectance", Spectrum{1});
     if (*f0 != Spectrum{1}) draft.recolor = [f = *f0](Spectrum c) { return c * f; };
     draft.material.metallic = 1;
@@ -120,14 +126,18 @@ void MitsubaMaterials::plastic(MitsubaProperties& p, MitsubaDraft& draft) {
         p.warn("the coat of \"roughplastic\" lets light through like a smooth one");
     }
     double eta = relative_ior(p, "polypropylene");
-    if (eta < 1) p.refuse("int_ior", "an index inside that is not below the one outside", fmt::format("a ratio of {:g}", eta));
+    if (eta < 1)
+        p.refuse("int_ior", "an index inside that is not below the one outside",
+                 fmt::format("a ratio of {:g}", eta));
     if (!is_one(textures_.color(p, "specular_reflectance", Spectrum{1})))
         p.warn(fmt::format("specular_reflectance of {} is read as 1", quote(p.object().type)));
     draft.color = textures_.color(p, "diffuse_reflectance", Spectrum{0.5f});
     const CoatedAlbedo coat(eta, 0, 100000);
     const auto entering = static_cast<float>(coat.entering());
     if (p.boolean("nonlinear", false))
-        draft.recolor = [coat](Spectrum c) { return Spectrum{coat.base(c.r), coat.base(c.g), coat.base(c.b)}; };
+        draft.recolor = [coat](Spectrum c) {
+            return Spectrum{coat.base(c.r), coat.base(c.g), coat.base(c.b)};
+        };
     draft.material.coated_diffuse = true;
     draft.material.specular = entering;
     draft.material.metallic = 0;
@@ -151,15 +161,18 @@ void MitsubaMaterials::principled(MitsubaProperties& p, MitsubaDraft& draft) {
     const double specular = p.number("specular", 0.5);
     const double from_specular = 2 / (1 - std::sqrt(0.08 * std::clamp(specular, 0.0, 1.0))) - 1;
     const double eta = p.number("eta", thin ? 1.5 : from_specular);
-    if (!(eta >= 1 && eta < 100)) p.refuse("eta", "an index of refraction of 1 to 100", fmt::format("{:g}", eta));
+    if (!(eta >= 1 && eta < 100))
+        p.refuse("eta", "an index of refraction of 1 to 100", fmt::format("{:g}", eta));
     m.ior = static_cast<float>(eta);
-    for (const char* name : {"anisotropic", "spec_tint", "sheen", "sheen_tint", "clearcoat", "flatness", "diff_trans"}) {
+    for (const char* name :
+         {"anisotropic", "spec_tint", "sheen", "sheen_tint", "clearcoat", "flatness", "diff_trans"}) {
         const PbrtNodeRef node = textures_.number(p, name, 0);
         if (!is_constant(node) || node->value.r != 0)
             p.warn(fmt::format("{} of {} is not supported: 0 instead", quote(name), quote(p.object().type)));
     }
     p.ignore({"clearcoat_gloss", "main_specular_sampling_rate", "clearcoat_sampling_rate",
-              "diffuse_reflectance_sampling_rate", "spec_reflectance_sampling_rate", "spec_trans_sampling_rate", "diff_trans_sampling_rate"});
+              "diffuse_reflectance_sampling_rate", "spec_reflectance_sampling_rate",
+              "spec_trans_sampling_rate", "diff_trans_sampling_rate"});
     draft.two_sided = m.transmission > 0 || thin;
 }
 
@@ -169,8 +182,11 @@ void MitsubaMaterials::nested(MitsubaProperties& p, MitsubaDraft& draft) {
     const std::vector<const MitsubaElement*> inner = p.objects("bsdf");
     const std::size_t most = type == "twosided" ? 2 : 1;
     if (inner.empty() || inner.size() > most)
-        refuse_pbrt(p.object().place, fmt::format("{} BSDF inside of {}", most == 2 ? "one or two" : "one", quote(type)), fmt::format("{}", inner.size()));
-    if (inner.size() == 2 && inner[0] != inner[1]) p.warn("the second BSDF of \"twosided\", that of the back, is not read");
+        refuse_pbrt(p.object().place,
+                    fmt::format("{} BSDF inside of {}", most == 2 ? "one or two" : "one", quote(type)),
+                    fmt::format("{}", inner.size()));
+    if (inner.size() == 2 && inner[0] != inner[1])
+        p.warn("the second BSDF of \"twosided\", that of the back, is not read");
     fill(*inner[0], draft);
     if (type == "twosided") {
         draft.two_sided = true;
@@ -191,7 +207,8 @@ void MitsubaMaterials::nested(MitsubaProperties& p, MitsubaDraft& draft) {
 
 void MitsubaMaterials::blend(MitsubaProperties& p, MitsubaDraft& draft) {
     const std::vector<const MitsubaElement*> inner = p.objects("bsdf");
-    if (inner.size() != 2) refuse_pbrt(p.object().place, "two BSDFs in \"blendbsdf\"", fmt::format("{}", inner.size()));
+    if (inner.size() != 2)
+        refuse_pbrt(p.object().place, "two BSDFs in \"blendbsdf\"", fmt::format("{}", inner.size()));
     const PbrtNodeRef weight = textures_.number(p, "weight", 0.5);
     MitsubaDraft a, b;
     a.place = b.place = draft.place;
@@ -212,13 +229,15 @@ void MitsubaMaterials::blend(MitsubaProperties& p, MitsubaDraft& draft) {
     }
     if (!a.visible || !b.visible) {  // a BSDF and nothing: a cut-out
         draft = a.visible ? a : b;
-        draft.opacity = a.visible ? mixed(constant_node(Spectrum{1}), constant_node({})) : mixed(constant_node({}), constant_node(Spectrum{1}));
+        draft.opacity = a.visible ? mixed(constant_node(Spectrum{1}), constant_node({}))
+                                  : mixed(constant_node({}), constant_node(Spectrum{1}));
         draft.visible = a.visible || b.visible;
         return;
     }
     p.warn("\"blendbsdf\" is approximated by a material between its two");
     const Material &ma = a.material, &mb = b.material;
-    if (ma.coated_diffuse || mb.coated_diffuse || ma.solid != mb.solid) return;  // the one of the larger share
+    if (ma.coated_diffuse || mb.coated_diffuse || ma.solid != mb.solid)
+        return;  // the one of the larger share
     if (!a.recolor && !b.recolor) draft.color = mixed(a.color, b.color);
     draft.material.metallic = std::lerp(ma.metallic, mb.metallic, share);
     draft.material.specular = std::lerp(ma.specular, mb.specular, share);
@@ -255,7 +274,8 @@ void MitsubaMaterials::fill_surface(MitsubaProperties& p, MitsubaDraft& draft) {
 void MitsubaMaterials::fill(const MitsubaElement& bsdf, MitsubaDraft& draft) {
     constexpr int max_depth = 16;
     if (++depth_ > max_depth)
-        refuse_pbrt(bsdf.place, fmt::format("at most {} BSDFs inside each other", max_depth), "more, or a circle");
+        refuse_pbrt(bsdf.place, fmt::format("at most {} BSDFs inside each other", max_depth),
+                    "more, or a circle");
     MitsubaProperties p(bsdf, scene_);
     fill_surface(p, draft);
     p.finish();

@@ -20,10 +20,10 @@ constexpr int max_include_depth = 32, max_depth = 64;
 constexpr std::size_t max_elements = std::size_t{1} << 23;
 constexpr std::size_t max_replaced = 65536;  // characters of a value after its parameters are replaced
 
-const std::vector<std::string> object_tags{"bsdf",       "emitter", "film",  "integrator", "medium",
-                                           "phase",      "rfilter", "scene", "sampler",    "sensor",
-                                           "shape",      "texture", "volume"};
-const std::vector<std::string> value_tags{"blackbody", "boolean", "float",  "integer", "point",  "rgb",
+const std::vector<std::string> object_tags{"bsdf",  "emitter", "film",  "integrator", "medium",
+                                           "phase", "rfilter", "scene", "sampler",    "sensor",
+                                           "shape", "texture", "volume"};
+const std::vector<std::string> value_tags{"blackbody", "boolean", "float",  "integer",   "point", "rgb",
                                           "spectrum",  "srgb",    "string", "transform", "vector"};
 const std::vector<std::string> control_tags{"alias", "default", "include", "path", "ref"};
 const std::vector<std::string> transform_tags{"lookat", "matrix", "rotate", "scale", "translate"};
@@ -61,7 +61,8 @@ class File {
     }
     /// Of the byte `offset`; of elements: where their name stands.
     [[nodiscard]] PbrtPlace place(std::ptrdiff_t offset) const {
-        const std::size_t at = std::clamp<std::size_t>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)), 0, text_.size());
+        const std::size_t at = std::clamp<std::size_t>(
+            static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)), 0, text_.size());
         const auto next = std::ranges::upper_bound(starts_, at);
         const auto line = static_cast<std::size_t>(next - starts_.begin());
         return {name_, static_cast<int>(line), static_cast<int>(at - starts_[line - 1]) + 1};
@@ -166,7 +167,9 @@ std::string DocumentReader::replaced(const std::string& text, const PbrtPlace& p
             out += text[i++];
             continue;
         }
-        const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+        const auto in_name = [](char c) {
+            return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+        };
         std::size_t end = i + 1;
         while (end < text.size() && in_name(text[end])) ++end;
         const std::string name = text.substr(i + 1, end - i - 1);
@@ -212,17 +215,20 @@ void DocumentReader::check_attributes(const MitsubaElement& element) const {
         refuse_pbrt(element.place, fmt::format("<{} name=…>", element.tag), "no name");
 }
 
-void DocumentReader::read_child(const File& file, const pugi::xml_node& node, MitsubaElement& into, int depth) {
+void DocumentReader::read_child(const File& file, const pugi::xml_node& node, MitsubaElement& into,
+                                int depth) {
     auto element = std::make_unique<MitsubaElement>(without_children(file, node));
     const PbrtPlace& place = element->place;
     if (depth > max_depth) refuse_pbrt(place, fmt::format("at most {} elements in a row", max_depth), "more");
     if (++elements_ > max_elements)
         refuse_pbrt(place, fmt::format("at most {} elements", max_elements), "more");
-    const bool in_transform = into.tag == "transform", in_object = is_in(object_tags, into.tag) || into.tag == "spectrum";
+    const bool in_transform = into.tag == "transform",
+               in_object = is_in(object_tags, into.tag) || into.tag == "spectrum";
     const auto fits = [&](const std::string& tag) {
         if (in_transform) return is_in(transform_tags, tag);
         if (!in_object) return false;
-        return (is_in(object_tags, tag) && tag != "scene") || is_in(value_tags, tag) || is_in(control_tags, tag);
+        return (is_in(object_tags, tag) && tag != "scene") || is_in(value_tags, tag)
+               || is_in(control_tags, tag);
     };
     if (!fits(element->tag)) {
         std::vector<std::string> all = in_transform ? transform_tags : object_tags;
@@ -230,9 +236,10 @@ void DocumentReader::read_child(const File& file, const pugi::xml_node& node, Mi
             all.insert(all.end(), value_tags.begin(), value_tags.end());
             all.insert(all.end(), control_tags.begin(), control_tags.end());
         }
-        refuse_pbrt(place, in_transform ? "a step of a transform, " + one_of(transform_tags)
-                           : in_object  ? std::string{"an object, a value or a reference"}
-                                        : fmt::format("nothing inside of <{}>", into.tag),
+        refuse_pbrt(place,
+                    in_transform ? "a step of a transform, " + one_of(transform_tags)
+                    : in_object  ? std::string{"an object, a value or a reference"}
+                                 : fmt::format("nothing inside of <{}>", into.tag),
                     fmt::format("<{}>{}", element->tag.size() < 40 ? element->tag : "…",
                                 did_you_mean(element->tag, all)));
     }
@@ -261,7 +268,8 @@ void DocumentReader::read_control(const MitsubaElement& element, MitsubaElement&
     }
     if (element.tag == "path")
         refuse_pbrt(element.place, "files beside the scene", "<path>, another folder to look for them");
-    if (into.tag != "scene") refuse_pbrt(element.place, "<alias> directly in <scene>", "it in <" + into.tag + ">");
+    if (into.tag != "scene")
+        refuse_pbrt(element.place, "<alias> directly in <scene>", "it in <" + into.tag + ">");
     aliases_.push_back({needed("id"), needed("as"), element.place});
 }
 

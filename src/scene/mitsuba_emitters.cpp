@@ -40,12 +40,14 @@ Vec3 unit_direction(const Point& w, MitsubaProperties& p, std::string_view name)
 /// Mitsuba's map has −Z at its left edge, +X a quarter to the right of it: ours a quarter turn on.
 Spectrum look_up(const Environment& map, const Point& w) {
     const double l = std::hypot(w[0], w[1], w[2]);
-    const double u = std::atan2(w[0], -w[2]) / (2 * pi_d), v = std::acos(std::clamp(w[1] / l, -1.0, 1.0)) / pi_d;
+    const double u = std::atan2(w[0], -w[2]) / (2 * pi_d),
+                 v = std::acos(std::clamp(w[1] / l, -1.0, 1.0)) / pi_d;
     const double x = (u - std::floor(u)) * map.width - 0.5, y = v * map.height - 0.5;
     const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
     const auto texel = [&](int column, int row) {
         const int c = (column % map.width + map.width) % map.width, r = std::clamp(row, 0, map.height - 1);
-        return map.radiance[static_cast<std::size_t>(r) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(c)];
+        return map.radiance[static_cast<std::size_t>(r) * static_cast<std::size_t>(map.width)
+                            + static_cast<std::size_t>(c)];
     };
     const auto s = static_cast<float>(x - i), t = static_cast<float>(y - j);
     return lerp(lerp(texel(i, j), texel(i + 1, j), s), lerp(texel(i, j + 1), texel(i + 1, j + 1), s), t);
@@ -55,8 +57,9 @@ Spectrum look_up(const Environment& map, const Point& w) {
 std::optional<double> turn_about_y(const Transform& t) {
     const double s = std::sqrt(t.m[0][0] * t.m[0][0] + t.m[0][2] * t.m[0][2]);
     const auto near = [&](double a, double b) { return std::abs(a - b) <= 1e-6 * s; };
-    const bool only = s > 0 && near(t.m[0][1], 0) && near(t.m[1][0], 0) && near(t.m[1][2], 0) && near(t.m[2][1], 0)
-                      && t.m[1][1] > 0 && near(t.m[0][0], t.m[2][2]) && near(t.m[0][2], -t.m[2][0]);
+    const bool only = s > 0 && near(t.m[0][1], 0) && near(t.m[1][0], 0) && near(t.m[1][2], 0)
+                      && near(t.m[2][1], 0) && t.m[1][1] > 0 && near(t.m[0][0], t.m[2][2])
+                      && near(t.m[0][2], -t.m[2][0]);
     if (!only) return {};
     return std::atan2(t.m[0][2], t.m[0][0]);
 }
@@ -73,8 +76,12 @@ Environment resampled(const Environment& map, const Transform& map_from_world) {
             double weights = 0;
             for (int k = 0; k < steps * steps; ++k) {
                 const double theta = pi_d * (y + (k / steps + 0.5) / steps) / height;
-                const double phi = 2 * pi_d * ((x + (k % steps + 0.5) / steps) / width - 0.5), across = std::sin(theta);
-                sum += look_up(map, apply(map_from_world, {across * std::cos(phi), std::cos(theta), across * std::sin(phi)}, 0)) * static_cast<float>(across);
+                const double phi = 2 * pi_d * ((x + (k % steps + 0.5) / steps) / width - 0.5),
+                             across = std::sin(theta);
+                sum +=
+                    look_up(map, apply(map_from_world,
+                                       {across * std::cos(phi), std::cos(theta), across * std::sin(phi)}, 0))
+                    * static_cast<float>(across);
                 weights += across;
             }
             turned.radiance.push_back(sum / static_cast<float>(weights));
@@ -115,19 +122,23 @@ class EmitterReader {
         return apply(t, p.vector("position", {0, 0, 0}), 1);
     }
     void point(MitsubaProperties& p) {
-        out_.point_lights.push_back({to_vec3(position(p)), mitsuba_color(p, "intensity", Spectrum{1}, MitsubaColorUse::light)});
+        out_.point_lights.push_back(
+            {to_vec3(position(p)), mitsuba_color(p, "intensity", Spectrum{1}, MitsubaColorUse::light)});
     }
     void spot(MitsubaProperties& p) {
         const double cutoff = p.number("cutoff_angle", 20), beam = p.number("beam_width", cutoff * 0.75);
         if (!(cutoff > 0 && cutoff < 180 && beam >= 0 && beam <= cutoff))
             p.refuse("cutoff_angle", "an angle of 0 to 180 degrees that is not below \"beam_width\"",
                      fmt::format("{:g} and {:g}", cutoff, beam));
-        if (beam < cutoff) p.warn("a spot's light falls off by a smooth step between beam_width and cutoff_angle");
+        if (beam < cutoff)
+            p.warn("a spot's light falls off by a smooth step between beam_width and cutoff_angle");
         p.unsupported({"texture"}, "an even spot instead");
         const Transform t = p.transform("to_world");
-        SpotLight light{to_vec3(apply(t, {0, 0, 0}, 1)), unit_direction(apply(t, {0, 0, 1}, 0), p, "to_world"),
+        SpotLight light{to_vec3(apply(t, {0, 0, 0}, 1)),
+                        unit_direction(apply(t, {0, 0, 1}, 0), p, "to_world"),
                         mitsuba_color(p, "intensity", Spectrum{1}, MitsubaColorUse::light),
-                        static_cast<float>(std::cos(beam * pi_d / 180)), static_cast<float>(std::cos(cutoff * pi_d / 180))};
+                        static_cast<float>(std::cos(beam * pi_d / 180)),
+                        static_cast<float>(std::cos(cutoff * pi_d / 180))};
         light.smoothstep = true;
         out_.spot_lights.push_back(light);
     }
@@ -135,8 +146,9 @@ class EmitterReader {
         const Transform t = p.transform("to_world");
         const bool given = p.find("direction") != nullptr;
         const Point w = given ? p.vector("direction", {0, 0, 1}) : apply(t, {0, 0, 1}, 0);
-        out_.directional_lights.push_back({unit_direction(w, p, "direction"),
-                                           mitsuba_color(p, "irradiance", Spectrum{1}, MitsubaColorUse::light)});
+        out_.directional_lights.push_back(
+            {unit_direction(w, p, "direction"),
+             mitsuba_color(p, "irradiance", Spectrum{1}, MitsubaColorUse::light)});
     }
     void set_environment(Environment environment, MitsubaProperties& p) {
         if (out_.environment) refuse_pbrt(p.object().place, "one environment", "a second one");
@@ -172,7 +184,8 @@ class EmitterReader {
         try {
             const std::string path = scene_.files.resolve(name, place);
             std::string ending = path.substr(path.find_last_of('.') + 1);
-            std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+            std::ranges::transform(ending, ending.begin(),
+                                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
             if (ending == "png" || ending == "jpg" || ending == "jpeg") {
                 PbrtTextures textures(scene_.notes, scene_.files, out_);
                 const auto pixels = textures.pixels(name, "sRGB", place);
@@ -192,7 +205,8 @@ class EmitterReader {
 
 }  // namespace
 
-void add_mitsuba_emitters(MitsubaScene& scene, const std::vector<const MitsubaElement*>& emitters, SceneData& out) {
+void add_mitsuba_emitters(MitsubaScene& scene, const std::vector<const MitsubaElement*>& emitters,
+                          SceneData& out) {
     EmitterReader reader(scene, out);
     for (const MitsubaElement* emitter : emitters) reader.read(*emitter);
 }

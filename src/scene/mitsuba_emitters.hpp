@@ -7,6 +7,7 @@
 namespace relumine {
 
 /// Adds lights and the environment. Throws SceneError or ImageError.
-void add_mitsuba_emitters(MitsubaScene& scene, const std::vector<const MitsubaElement*>& emitters, SceneData& out);
+void add_mitsuba_emitters(MitsubaScene& scene, const std::vector<const MitsubaElement*>& emitters,
+                          SceneData& out);
 
 }  // namespace relumine

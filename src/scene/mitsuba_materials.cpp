@@ -47,10 +47,12 @@ void MitsubaMaterials::emit(const MitsubaElement& emitter, MitsubaDraft& draft,
                             const std::array<Vec2, 2>& domain, Binding& binding) {
     MitsubaProperties p(emitter, scene_);
     if (emitter.type == "directionalarea")
-        refuse_pbrt(emitter.place, "emitter \"area\" in a shape", "\"directionalarea\", which is not supported");
+        refuse_pbrt(emitter.place, "emitter \"area\" in a shape",
+                    "\"directionalarea\", which is not supported");
     const std::vector<std::string> types{"area"};
     if (emitter.type != "area")
-        refuse_pbrt(emitter.place, "emitter \"area\" in a shape", quote(emitter.type) + did_you_mean(emitter.type, types));
+        refuse_pbrt(emitter.place, "emitter \"area\" in a shape",
+                    quote(emitter.type) + did_you_mean(emitter.type, types));
     const PbrtNodeRef radiance = textures_.color(p, "radiance", Spectrum{1}, MitsubaColorUse::light);
     p.ignore({"sampling_weight"});
     p.unsupported({"to_world"}, "the shape's is used");
@@ -79,7 +81,8 @@ void MitsubaMaterials::bake(MitsubaDraft& draft, const std::array<Vec2, 2>& doma
         const Spectrum c = to_unit(draft.recolor ? draft.recolor(v[0]) : v[0]);
         return Vec4{c.r, c.g, c.b, cut ? std::clamp(v[1].r, 0.0f, 1.0f) : 1.0f};
     };
-    const PbrtBaked color = textures_.baker().bake(nodes, surface, true, !draft.recolor && !cut, domain, draft.place);
+    const PbrtBaked color =
+        textures_.baker().bake(nodes, surface, true, !draft.recolor && !cut, domain, draft.place);
     apply(color, m.base_color_texture, binding);
     m.base_color = color.texture ? Spectrum{1} : Spectrum{color.value.x, color.value.y, color.value.z};
     if (cut) {
@@ -107,8 +110,9 @@ void MitsubaMaterials::bake(MitsubaDraft& draft, const std::array<Vec2, 2>& doma
 void MitsubaMaterials::note_sides(const MitsubaDraft& draft) {
     if (draft.two_sided || noted_sides_) return;
     noted_sides_ = true;
-    scene_.notes.warn(draft.place, "without \"twosided\" the back of a surface is black in Mitsuba; here both "
-                                   "sides reflect (this and all others)");
+    scene_.notes.warn(draft.place,
+                      "without \"twosided\" the back of a surface is black in Mitsuba; here both "
+                      "sides reflect (this and all others)");
 }
 
 MitsubaMaterials::Binding MitsubaMaterials::bind(const MitsubaElement* bsdf, const MitsubaElement* emitter,
@@ -138,7 +142,8 @@ MitsubaMaterials::Binding MitsubaMaterials::bind(const MitsubaElement* bsdf, con
         draft.color = constant_node({});
         draft.material.metallic = draft.material.specular = draft.material.transmission = 0;
         draft.opacity = constant_node(Spectrum{1});
-        scene_.notes.warn(draft.place, "a light on a surface that lets light through is read as one on a black surface");
+        scene_.notes.warn(draft.place,
+                          "a light on a surface that lets light through is read as one on a black surface");
     }
     binding.visible = draft.visible;
     binding.inside_out = draft.inside_out;

@@ -28,8 +28,7 @@ struct MitsubaDraft {
 
 class MitsubaMaterials {
   public:
-    MitsubaMaterials(MitsubaScene& scene, SceneData& out)
-        : scene_(scene), out_(out), textures_(scene, out) {}
+    MitsubaMaterials(MitsubaScene& scene, SceneData& out) : scene_(scene), out_(out), textures_(scene, out) {}
 
     /// What a shape's mesh needs from its material.
     struct Binding {
@@ -57,7 +56,8 @@ class MitsubaMaterials {
     void blend(MitsubaProperties& p, MitsubaDraft& draft);
     void read_alpha(MitsubaProperties& p, MitsubaDraft& draft);
     [[nodiscard]] double relative_ior(MitsubaProperties& p, const char* inside);
-    void emit(const MitsubaElement& emitter, MitsubaDraft& draft, const std::array<Vec2, 2>& domain, Binding& binding);
+    void emit(const MitsubaElement& emitter, MitsubaDraft& draft, const std::array<Vec2, 2>& domain,
+              Binding& binding);
     void bake(MitsubaDraft& draft, const std::array<Vec2, 2>& domain, Binding& binding);
     void apply(const PbrtBaked& baked, std::optional<TextureRef>& ref, Binding& binding);
     void note_sides(const MitsubaDraft& draft);

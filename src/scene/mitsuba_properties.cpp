@@ -174,7 +174,8 @@ void MitsubaProperties::finish() {
     for (Child& child : children_) {
         if (child.used) continue;
         child.used = true;
-        const std::string what = child.name.empty() ? fmt::format("<{}>", child.element->tag) : quote(child.name);
+        const std::string what =
+            child.name.empty() ? fmt::format("<{}>", child.element->tag) : quote(child.name);
         scene_.notes.warn(child.place, fmt::format("{} of {} is unknown and was not read{}", what,
                                                    quote(object_.type), did_you_mean(child.name, asked_)));
     }

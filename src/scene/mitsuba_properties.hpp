@@ -62,7 +62,8 @@ class MitsubaProperties {
         bool used = false;
     };
     [[nodiscard]] Child* child(std::string_view name);
-    [[nodiscard]] const MitsubaElement* value(std::string_view name, std::initializer_list<std::string_view> tags);
+    [[nodiscard]] const MitsubaElement* value(std::string_view name,
+                                              std::initializer_list<std::string_view> tags);
 
     const MitsubaElement& object_;
     MitsubaScene& scene_;

@@ -70,7 +70,8 @@ class ShapeBuilder {
         const Transform world_from_group = p.transform("to_world");
         const std::vector<const MitsubaElement*> groups = p.objects("shape");
         if (groups.size() != 1 || groups[0]->type != "shapegroup")
-            refuse_pbrt(shape.place, "one shapegroup in \"instance\"", groups.empty() ? "none" : quote(groups[0]->type));
+            refuse_pbrt(shape.place, "one shapegroup in \"instance\"",
+                        groups.empty() ? "none" : quote(groups[0]->type));
         for (const Placed& part : group(*groups[0])) {
             if (out_.instances.size() >= max_instances)
                 refuse_pbrt(shape.place, fmt::format("at most {} instances", max_instances), "more");
@@ -98,15 +99,19 @@ class ShapeBuilder {
         Mesh& mesh = made.mesh;
         const Transform world_from_mesh = p.transform("to_world") * made.object_from_mesh;
         const std::vector<const MitsubaElement*> bsdfs = p.objects("bsdf"), emitters = p.objects("emitter");
-        if (bsdfs.size() > 1) refuse_pbrt(shape.place, "one BSDF of the shape", fmt::format("{}", bsdfs.size()));
-        if (emitters.size() > 1) refuse_pbrt(shape.place, "one emitter of the shape", fmt::format("{}", emitters.size()));
+        if (bsdfs.size() > 1)
+            refuse_pbrt(shape.place, "one BSDF of the shape", fmt::format("{}", bsdfs.size()));
+        if (emitters.size() > 1)
+            refuse_pbrt(shape.place, "one emitter of the shape", fmt::format("{}", emitters.size()));
         for (const MitsubaElement* medium : p.objects("medium"))
             scene_.notes.warn(medium->place, "participating media are not rendered");
         p.finish();
         if (mesh.triangles.empty()) return {};
         elements_ += mesh.positions.size() + mesh.triangles.size();
-        if (elements_ > max_elements) refuse_pbrt(shape.place, "at most 2^30 vertices and triangles in all", "more");
-        const auto binding = materials_.bind(bsdfs.empty() ? nullptr : bsdfs[0], emitters.empty() ? nullptr : emitters[0], uv_range(mesh));
+        if (elements_ > max_elements)
+            refuse_pbrt(shape.place, "at most 2^30 vertices and triangles in all", "more");
+        const auto binding = materials_.bind(bsdfs.empty() ? nullptr : bsdfs[0],
+                                             emitters.empty() ? nullptr : emitters[0], uv_range(mesh));
         if (!binding.visible) return {};
         mesh.material = binding.material;
         mesh.name = shape.id.empty() ? shape.type : shape.id;
@@ -135,17 +140,21 @@ class ShapeBuilder {
 /// Mitsuba counts edges of a path, we its scattering vertices: one less.
 void note_integrator(const MitsubaElement& element, MitsubaScene& scene) {
     MitsubaProperties p(element, scene);
-    const std::vector<std::string> types{"path", "volpath", "volpathmis", "direct", "aov", "moment", "ptracer"};
+    const std::vector<std::string> types{"path", "volpath", "volpathmis", "direct",
+                                         "aov",  "moment",  "ptracer"};
     if (std::ranges::find(types, element.type) == types.end())
         p.warn(fmt::format("integrator {} is unknown: the command chooses the method", quote(element.type)));
     const int depth = p.integer("max_depth", -1);
     if (depth < -1) p.refuse("max_depth", "-1 or a depth of at least 0", fmt::format("{}", depth));
-    if (element.type == "direct") p.warn("integrator \"direct\" is not taken over: --max-depth 1 renders the same");
+    if (element.type == "direct")
+        p.warn("integrator \"direct\" is not taken over: --max-depth 1 renders the same");
     else if (depth > 0)
-        p.warn(fmt::format("\"max_depth\" {} is not taken over: --max-depth {} renders the same", depth, depth - 1));
+        p.warn(fmt::format("\"max_depth\" {} is not taken over: --max-depth {} renders the same", depth,
+                           depth - 1));
     if (p.boolean("hide_emitters", false)) p.warn("\"hide_emitters\" is not supported: lights are seen");
     for (const MitsubaElement* inner : p.objects("integrator")) note_integrator(*inner, scene);
-    p.ignore({"rr_depth", "aovs", "shading_samples", "emitter_samples", "bsdf_samples", "samples_per_pass", "block_size", "timeout", "integrator"});
+    p.ignore({"rr_depth", "aovs", "shading_samples", "emitter_samples", "bsdf_samples", "samples_per_pass",
+              "block_size", "timeout", "integrator"});
     p.finish();
 }
 
@@ -158,9 +167,11 @@ SceneData read_mitsuba(const std::string& path, const SceneOptions& options) {
     SceneData out;
     out.name = path;
     if (!scene.document.unused.empty())
-        throw SceneError{expected_found(path, "parameters that a <default> names", quote(scene.document.unused[0]))};
+        throw SceneError{
+            expected_found(path, "parameters that a <default> names", quote(scene.document.unused[0]))};
     MitsubaProperties p(root, scene);
-    for (const MitsubaElement* sensor : p.objects("sensor")) out.cameras.push_back(make_mitsuba_camera(scene, *sensor));
+    for (const MitsubaElement* sensor : p.objects("sensor"))
+        out.cameras.push_back(make_mitsuba_camera(scene, *sensor));
     ShapeBuilder shapes(scene, out);
     for (const MitsubaElement* shape : p.objects("shape")) shapes.place(*shape);
     shapes.check_unused();

@@ -20,9 +20,11 @@ constexpr int max_side = 65536;
 
 void read_crop(MitsubaProperties& p, Camera& camera) {
     const PixelRect crop{p.integer("crop_offset_x", 0), p.integer("crop_offset_y", 0), 0, 0};
-    const int width = p.integer("crop_width", camera.width - std::clamp(crop.x0, 0, camera.width)), height = p.integer("crop_height", camera.height - std::clamp(crop.y0, 0, camera.height));
-    const bool inside = crop.x0 >= 0 && crop.y0 >= 0 && width >= 1 && height >= 1 && crop.x0 < camera.width && crop.y0 < camera.height
-                        && width <= camera.width - crop.x0 && height <= camera.height - crop.y0;
+    const int width = p.integer("crop_width", camera.width - std::clamp(crop.x0, 0, camera.width)),
+              height = p.integer("crop_height", camera.height - std::clamp(crop.y0, 0, camera.height));
+    const bool inside = crop.x0 >= 0 && crop.y0 >= 0 && width >= 1 && height >= 1 && crop.x0 < camera.width
+                        && crop.y0 < camera.height && width <= camera.width - crop.x0
+                        && height <= camera.height - crop.y0;
     if (!inside)
         p.refuse("crop_width", fmt::format("a crop inside of {} × {} pixels", camera.width, camera.height),
                  fmt::format("{} × {} at {}, {}", width, height, crop.x0, crop.y0));
@@ -34,7 +36,8 @@ void read_film(const MitsubaElement& film, MitsubaScene& scene, Camera& camera) 
     MitsubaProperties p(film, scene);
     const std::vector<std::string> types{"hdrfilm", "ldrfilm", "specfilm"};
     if (std::ranges::find(types, film.type) == types.end())
-        refuse_pbrt(film.place, "a film among " + one_of(types), quote(film.type) + did_you_mean(film.type, types));
+        refuse_pbrt(film.place, "a film among " + one_of(types),
+                    quote(film.type) + did_you_mean(film.type, types));
     camera.width = p.integer("width", 768);
     camera.height = p.integer("height", 576);
     for (const char* side : {"width", "height"}) {
@@ -43,7 +46,8 @@ void read_film(const MitsubaElement& film, MitsubaScene& scene, Camera& camera) 
             p.refuse(side, fmt::format("1 to {} pixels", max_side), fmt::format("{}", pixels));
     }
     read_crop(p, camera);
-    p.ignore({"file_format", "pixel_format", "component_format", "banner", "compensate", "sample_border", "high_quality_edges", "gamma", "exposure"});
+    p.ignore({"file_format", "pixel_format", "component_format", "banner", "compensate", "sample_border",
+              "high_quality_edges", "gamma", "exposure"});
     (void)p.objects("rfilter");  // the command's choice
     p.finish();
 }
@@ -79,21 +83,26 @@ double read_fov(MitsubaProperties& p, double aspect) {
 }
 
 void read_lens(MitsubaProperties& p, Camera& camera) {
-    if (!p.find("aperture_radius")) p.refuse("aperture_radius", "\"aperture_radius\" of \"thinlens\"", "none");
+    if (!p.find("aperture_radius"))
+        p.refuse("aperture_radius", "\"aperture_radius\" of \"thinlens\"", "none");
     camera.lens_radius = p.number("aperture_radius", 0);
     camera.focus_distance = p.number("focus_distance", 0);
-    if (!(camera.lens_radius >= 0)) p.refuse("aperture_radius", "a radius of at least 0", fmt::format("{:g}", camera.lens_radius));
-    if (!(camera.focus_distance > 0)) p.refuse("focus_distance", "a distance above 0", fmt::format("{:g}", camera.focus_distance));
+    if (!(camera.lens_radius >= 0))
+        p.refuse("aperture_radius", "a radius of at least 0", fmt::format("{:g}", camera.lens_radius));
+    if (!(camera.focus_distance > 0))
+        p.refuse("focus_distance", "a distance above 0", fmt::format("{:g}", camera.focus_distance));
 }
 
 /// Mitsuba's sensor looks along +Z with +X to the left; ours along −Z with +X to the right.
 Transform our_camera(MitsubaProperties& p, bool orthographic) {
     const Transform world_from_sensor = p.transform("to_world");
-    if (!inverse(world_from_sensor)) p.refuse("to_world", "a sensor transform that can be inverted", "a flat one");
+    if (!inverse(world_from_sensor))
+        p.refuse("to_world", "a sensor transform that can be inverted", "a flat one");
     Transform t = world_from_sensor;
     std::array<double, 3> length{};
     for (std::size_t j = 0; j < 3; ++j) length[j] = std::hypot(t.m[0][j], t.m[1][j], t.m[2][j]);
-    const double most = std::max({length[0], length[1], length[2]}), least = std::min({length[0], length[1], length[2]});
+    const double most = std::max({length[0], length[1], length[2]}),
+                 least = std::min({length[0], length[1], length[2]});
     if (most > least * 1.001 && !(orthographic && std::abs(length[0] - length[1]) < 1e-3 * most))
         p.warn("the sensor's to_world stretches its axes; the stretch is not rendered");
     for (auto& row : t.m) {
@@ -117,7 +126,8 @@ Camera make_mitsuba_camera(MitsubaScene& scene, const MitsubaElement& sensor) {
     MitsubaProperties p(sensor, scene);
     const std::vector<std::string> types{"orthographic", "perspective", "thinlens"};
     if (std::ranges::find(types, sensor.type) == types.end())
-        refuse_pbrt(sensor.place, "a sensor among " + one_of(types), quote(sensor.type) + did_you_mean(sensor.type, types));
+        refuse_pbrt(sensor.place, "a sensor among " + one_of(types),
+                    quote(sensor.type) + did_you_mean(sensor.type, types));
     Camera camera;
     camera.name = sensor.id.empty() ? sensor.type : sensor.id;
     camera.width = 768;

@@ -30,7 +30,8 @@ T read_at(std::span<const std::uint8_t> bytes, std::size_t offset, const std::st
 /// Unpacks a zlib stream as far as it is asked for.
 class Unpacked {
   public:
-    Unpacked(std::span<const std::uint8_t> packed, const std::string& where) : packed_(packed), where_(where) {
+    Unpacked(std::span<const std::uint8_t> packed, const std::string& where)
+        : packed_(packed), where_(where) {
         stream_.next_in = const_cast<Bytef*>(packed.data());  // zlib does not write there
         stream_.avail_in = static_cast<uInt>(std::min<std::size_t>(packed.size(), 0xFFFFFFFFu));
         if (inflateInit(&stream_) != Z_OK) throw SceneError{where + ": zlib does not start"};
@@ -43,7 +44,8 @@ class Unpacked {
     void check_count(std::uint64_t count, std::size_t bytes_each, const char* what) const {
         const std::uint64_t most = std::uint64_t{packed_.size()} * 1032 / bytes_each + 1;
         if (count > most || count > 0xFFFFFFF0u)
-            throw SceneError{expected_found(where_, fmt::format("{} that the file has room for", what), fmt::format("{}", count))};
+            throw SceneError{expected_found(where_, fmt::format("{} that the file has room for", what),
+                                            fmt::format("{}", count))};
     }
     template <typename T>
     T take() {
@@ -85,23 +87,27 @@ std::vector<std::array<float, n>> numbers(Unpacked& in, std::size_t count, bool 
     return values;
 }
 
-void read_triangles(Unpacked& in, std::size_t count, std::size_t vertices, Mesh& mesh, const std::string& where) {
+void read_triangles(Unpacked& in, std::size_t count, std::size_t vertices, Mesh& mesh,
+                    const std::string& where) {
     mesh.triangles.resize(count);
     for (Triangle& t : mesh.triangles) {
         t.vertex = in.take<std::array<std::uint32_t, 3>>();
         for (const std::uint32_t vertex : t.vertex)
             if (vertex >= vertices)
-                throw SceneError{expected_found(where, fmt::format("vertices below {}", vertices), fmt::format("{}", vertex))};
+                throw SceneError{expected_found(where, fmt::format("vertices below {}", vertices),
+                                                fmt::format("{}", vertex))};
     }
 }
 
 Mesh read_mesh(Unpacked& in, std::uint16_t version, const std::string& where) {
     const auto flags = in.take<std::uint32_t>();
     if (version == 4)
-        while (in.take<char>() != '\0') {}  // its name
+        while (in.take<char>() != '\0') {
+        }  // its name
     const bool doubles = (flags & double_precision) != 0;
     if (doubles == ((flags & single_precision) != 0))
-        throw SceneError{expected_found(where, "single or double precision", fmt::format("flags {:#x}", flags))};
+        throw SceneError{
+            expected_found(where, "single or double precision", fmt::format("flags {:#x}", flags))};
     const auto vertices = in.take<std::uint64_t>(), triangles = in.take<std::uint64_t>();
     in.check_count(vertices, doubles ? 24 : 12, "vertices");
     in.check_count(triangles, 12, "triangles");
@@ -124,7 +130,8 @@ std::size_t offset_of(std::span<const std::uint8_t> bytes, std::size_t shape, st
     const std::size_t entry = version == 4 ? 8 : 4;
     const auto count = read_at<std::uint32_t>(bytes, bytes.size() - 4, where);
     if (shape >= count || std::uint64_t{count} * entry + 4 > bytes.size())
-        throw SceneError{expected_found(where, fmt::format("a shape_index below {}", count), fmt::format("{}", shape))};
+        throw SceneError{
+            expected_found(where, fmt::format("a shape_index below {}", count), fmt::format("{}", shape))};
     const std::size_t at = bytes.size() - 4 - (count - shape) * entry;
     return version == 4 ? read_at<std::uint64_t>(bytes, at, where) : read_at<std::uint32_t>(bytes, at, where);
 }

@@ -17,10 +17,11 @@
 namespace relumine {
 namespace {
 
-const std::vector<std::string> shape_types{"cube", "cylinder", "disk",       "instance",   "obj",
+const std::vector<std::string> shape_types{"cube", "cylinder",  "disk",       "instance",   "obj",
                                            "ply",  "rectangle", "serialized", "shapegroup", "sphere"};
 
-PbrtParameters with(double radius, std::initializer_list<std::pair<const char*, double>> more, const PbrtPlace& place) {
+PbrtParameters with(double radius, std::initializer_list<std::pair<const char*, double>> more,
+                    const PbrtPlace& place) {
     std::vector<PbrtParameter> parameters;
     const auto add = [&](const char* name, double value) {
         PbrtParameter p;
@@ -120,7 +121,8 @@ MitsubaMesh from_file(MitsubaProperties& p) {
         else if (type == "ply")
             mesh = parse_ply(p.scene().files.read(name, place), name, warnings);
         else
-            mesh = parse_serialized(p.scene().files.read(name, place), static_cast<std::size_t>(std::max(0, p.integer("shape_index", 0))), name);
+            mesh = parse_serialized(p.scene().files.read(name, place),
+                                    static_cast<std::size_t>(std::max(0, p.integer("shape_index", 0))), name);
     } catch (const FileError& error) {
         const std::string where = place.text(), text = error.what();
         throw SceneError{text.starts_with(where) ? text : where + ": " + text};

@@ -26,10 +26,12 @@ Spectrum constant_spectrum(double value, Use use) {
 
 Spectrum of_pairs(const std::vector<double>& pairs, Use use, const PbrtPlace& place) {
     if (pairs.size() < 4 || pairs.size() % 2 != 0)
-        refuse_pbrt(place, "two or more pairs of wavelength and value", fmt::format("{} numbers", pairs.size()));
+        refuse_pbrt(place, "two or more pairs of wavelength and value",
+                    fmt::format("{} numbers", pairs.size()));
     for (std::size_t i = 2; i < pairs.size(); i += 2)
         if (!(pairs[i] > pairs[i - 2]))
-            refuse_pbrt(place, "increasing wavelengths", fmt::format("{:g} after {:g}", pairs[i], pairs[i - 2]));
+            refuse_pbrt(place, "increasing wavelengths",
+                        fmt::format("{:g} after {:g}", pairs[i], pairs[i - 2]));
     if (use == Use::light) return light_rgb_of_samples(pairs);
     return rgb_of_samples(pairs, PbrtSpectrumUse::unbounded);
 }
@@ -44,7 +46,9 @@ Spectrum of_text(const MitsubaElement& e, Use use, MitsubaScene& scene) {
             comment = byte == '#' || (comment && byte != '\n');
             if (!comment) text += static_cast<char>(byte);
         }
-        return of_pairs(mitsuba_numbers(text, e.place, "pairs of wavelength and value in " + quote(e.attribute("filename"))), use, e.place);
+        return of_pairs(mitsuba_numbers(text, e.place,
+                                        "pairs of wavelength and value in " + quote(e.attribute("filename"))),
+                        use, e.place);
     }
     std::string text = e.attribute("value");
     const std::string what = "a number or pairs wavelength:value";
@@ -57,7 +61,8 @@ Spectrum of_text(const MitsubaElement& e, Use use, MitsubaScene& scene) {
 }
 
 Spectrum of_rgb(const MitsubaElement& e, bool encoded) {
-    const std::vector<double> v = mitsuba_numbers(e.attribute("value"), e.place, "three numbers for the colour");
+    const std::vector<double> v =
+        mitsuba_numbers(e.attribute("value"), e.place, "three numbers for the colour");
     if (v.size() != 3 && v.size() != 1)
         refuse_pbrt(e.place, "three numbers for the colour", fmt::format("{}", v.size()));
     std::array<float, 3> c{};
@@ -82,7 +87,8 @@ Spectrum of_plugin(const MitsubaElement& e, Use use, MitsubaScene& scene) {
     if (e.type == "uniform") {
         color = constant_spectrum(p.number("value", 1), use);
     } else if (e.type == "d65") {
-        color = mitsuba_color(p, "color", Spectrum{1}, Use::unbounded) * static_cast<float>(p.number("scale", 1));
+        color =
+            mitsuba_color(p, "color", Spectrum{1}, Use::unbounded) * static_cast<float>(p.number("scale", 1));
     } else if (e.type == "srgb") {
         color = mitsuba_color(p, "color", Spectrum{1}, Use::unbounded);
     } else if (e.type == "blackbody") {
@@ -90,12 +96,14 @@ Spectrum of_plugin(const MitsubaElement& e, Use use, MitsubaScene& scene) {
     } else if (e.type == "irregular") {
         const auto a = mitsuba_numbers(p.string("wavelengths", ""), e.place, "numbers for the wavelengths");
         const auto b = mitsuba_numbers(p.string("values", ""), e.place, "numbers for the values");
-        if (a.size() != b.size()) p.refuse("values", fmt::format("{} values", a.size()), fmt::format("{}", b.size()));
+        if (a.size() != b.size())
+            p.refuse("values", fmt::format("{} values", a.size()), fmt::format("{}", b.size()));
         std::vector<double> pairs;
         for (std::size_t i = 0; i < a.size(); ++i) pairs.insert(pairs.end(), {a[i], b[i]});
         color = of_pairs(pairs, use, e.place);
     } else {
-        refuse_pbrt(e.place, "a spectrum among " + one_of(types), quote(e.type) + did_you_mean(e.type, types));
+        refuse_pbrt(e.place, "a spectrum among " + one_of(types),
+                    quote(e.type) + did_you_mean(e.type, types));
     }
     p.finish();
     return color;
@@ -108,13 +116,18 @@ Spectrum read(const MitsubaElement& e, Use use, MitsubaScene& scene) {
     if (e.tag == "blackbody") {
         const auto kelvin = mitsuba_numbers(e.attribute("temperature"), e.place, "a temperature in K");
         const auto scale = mitsuba_numbers(e.attribute("scale"), e.place, "a scale");
-        if (kelvin.size() != 1 || scale.size() > 1) refuse_pbrt(e.place, "a temperature in K", quote(e.attribute("temperature")));
+        if (kelvin.size() != 1 || scale.size() > 1)
+            refuse_pbrt(e.place, "a temperature in K", quote(e.attribute("temperature")));
         return black_body(kelvin[0], scale.empty() ? 1 : scale[0], e.place);
     }
     if (e.tag != "float" && e.tag != "integer")
-        refuse_pbrt(e.place, fmt::format("a colour or spectrum for {}", quote(e.name)), fmt::format("<{}{}>", e.tag, e.type.empty() ? "" : " type=" + quote(e.type)));
-    const auto v = mitsuba_numbers(e.attribute("value"), e.place, fmt::format("a number for {}", quote(e.name)));
-    if (v.size() != 1) refuse_pbrt(e.place, fmt::format("a number for {}", quote(e.name)), fmt::format("{} numbers", v.size()));
+        refuse_pbrt(e.place, fmt::format("a colour or spectrum for {}", quote(e.name)),
+                    fmt::format("<{}{}>", e.tag, e.type.empty() ? "" : " type=" + quote(e.type)));
+    const auto v =
+        mitsuba_numbers(e.attribute("value"), e.place, fmt::format("a number for {}", quote(e.name)));
+    if (v.size() != 1)
+        refuse_pbrt(e.place, fmt::format("a number for {}", quote(e.name)),
+                    fmt::format("{} numbers", v.size()));
     return Spectrum{static_cast<float>(v[0])};
 }
 
@@ -160,12 +173,14 @@ struct NamedIor {
     double ior;
 };
 constexpr std::array<NamedIor, 22> iors{{
-    {"vacuum", 1.0},          {"helium", 1.000036},   {"hydrogen", 1.000132},      {"air", 1.000277},
-    {"carbon dioxide", 1.00045}, {"water", 1.3330},   {"acetone", 1.36},           {"ethanol", 1.361},
-    {"carbon tetrachloride", 1.461}, {"glycerol", 1.4729}, {"benzene", 1.501},     {"silicone oil", 1.52045},
-    {"bromine", 1.661},       {"water ice", 1.31},    {"fused quartz", 1.458},     {"pyrex", 1.470},
-    {"acrylic glass", 1.49},  {"polypropylene", 1.49}, {"bk7", 1.5046},            {"sodium chloride", 1.544},
-    {"pet", 1.5750},          {"diamond", 2.419},
+    {"vacuum", 1.0},      {"helium", 1.000036},        {"hydrogen", 1.000132},
+    {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.3330},
+    {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
+    {"glycerol", 1.4729}, {"benzene", 1.501},          {"silicone oil", 1.52045},
+    {"bromine", 1.661},   {"water ice", 1.31},         {"fused quartz", 1.458},
+    {"pyrex", 1.470},     {"acrylic glass", 1.49},     {"polypropylene", 1.49},
+    {"bk7", 1.5046},      {"sodium chloride", 1.544},  {"pet", 1.5750},
+    {"diamond", 2.419},
 }};
 
 }  // namespace

@@ -78,7 +78,8 @@ PbrtNodeRef MitsubaTextures::node(const MitsubaElement& element, MitsubaColorUse
     PbrtNodeRef& known = made_[{&element, use}];
     if (known) return known;
     if (++depth_ > max_depth)
-        refuse_pbrt(element.place, fmt::format("at most {} textures in a row", max_depth), "more, or a circle");
+        refuse_pbrt(element.place, fmt::format("at most {} textures in a row", max_depth),
+                    "more, or a circle");
     MitsubaProperties p(element, scene_);
     PbrtNodeRef node;
     const std::vector<std::string> types{"bitmap", "checkerboard", "scale"};

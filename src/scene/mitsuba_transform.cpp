@@ -19,7 +19,8 @@ Triple triple(const MitsubaElement& e, double otherwise) {
     if (e.attributes.contains("value")) {
         const std::vector<double> v = mitsuba_numbers(e.attribute("value"), e.place, what);
         if (v.size() == 1 && e.tag == "scale") return {v[0], v[0], v[0]};
-        if (v.size() != 3) refuse_pbrt(e.place, fmt::format("three numbers for <{}>", e.tag), fmt::format("{}", v.size()));
+        if (v.size() != 3)
+            refuse_pbrt(e.place, fmt::format("three numbers for <{}>", e.tag), fmt::format("{}", v.size()));
         return {v[0], v[1], v[2]};
     }
     Triple t{otherwise, otherwise, otherwise};
@@ -27,7 +28,8 @@ Triple triple(const MitsubaElement& e, double otherwise) {
     for (std::size_t i = 0; i < 3; ++i) {
         if (!e.attributes.contains(axes[i])) continue;
         const std::vector<double> v = mitsuba_numbers(e.attribute(axes[i]), e.place, what);
-        if (v.size() != 1) refuse_pbrt(e.place, fmt::format("one number for {}", axes[i]), fmt::format("{}", v.size()));
+        if (v.size() != 1)
+            refuse_pbrt(e.place, fmt::format("one number for {}", axes[i]), fmt::format("{}", v.size()));
         t[i] = v[0];
     }
     return t;
@@ -35,10 +37,13 @@ Triple triple(const MitsubaElement& e, double otherwise) {
 
 Transform rotation(const MitsubaElement& e) {
     const std::vector<double> angle = mitsuba_numbers(e.attribute("angle"), e.place, "an angle in degrees");
-    if (angle.size() != 1) refuse_pbrt(e.place, "an angle in degrees", fmt::format("{} numbers", angle.size()));
+    if (angle.size() != 1)
+        refuse_pbrt(e.place, "an angle in degrees", fmt::format("{} numbers", angle.size()));
     const Triple axis = triple(e, 0);
     const double l = std::hypot(axis[0], axis[1], axis[2]);
-    if (!(l > 1e-30 && l < 1e30)) refuse_pbrt(e.place, "an axis that is not 0", fmt::format("{:g} {:g} {:g}", axis[0], axis[1], axis[2]));
+    if (!(l > 1e-30 && l < 1e30))
+        refuse_pbrt(e.place, "an axis that is not 0",
+                    fmt::format("{:g} {:g} {:g}", axis[0], axis[1], axis[2]));
     return pbrt_rotate(angle[0], axis);
 }
 
@@ -94,7 +99,8 @@ Transform mitsuba_transform(const MitsubaElement& element) {
     for (const auto& child : element.children) t = step(*child) * t;
     for (const auto& row : t.m)
         for (const double x : row)
-            if (!(std::abs(x) < 1e30)) refuse_pbrt(element.place, "a transform with numbers below 1e30", "larger ones");
+            if (!(std::abs(x) < 1e30))
+                refuse_pbrt(element.place, "a transform with numbers below 1e30", "larger ones");
     return t;
 }
 
