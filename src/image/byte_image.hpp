@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of small integers, as textures are stored: decoding PNG and JPEG from memory, encoding PNG.
+// Pictures of small integers, as textures are stored: decoding PNG, JPEG and WebP from memory, encoding PNG.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ struct ByteImage {
     std::vector<std::uint16_t> rgba16;  // 4 × width × height in native byte order, or empty
 };
 
-/// Decodes PNG or JPEG by content. Throws ImageError with `name` in front: unknown format, damage, or too
-/// many pixels.
+/// Decodes PNG, JPEG or WebP by content. Throws ImageError with `name` in front: unknown format, damage, or
+/// too many pixels.
 [[nodiscard]] ByteImage decode_byte_image(std::span<const std::uint8_t> encoded, const std::string& name);
 
 /// Encodes 8-bit RGB, row-major, 3 × width × height bytes, with an sRGB chunk.
