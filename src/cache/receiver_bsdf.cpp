@@ -16,6 +16,7 @@ struct Lobes {
         bsdf.coat_f0 = b.coat_f0;
         bsdf.coat_f90 = b.coat_f90;
         bsdf.coated = !is_black(b.coat_f0) || !is_black(b.coat_f90);
+        bsdf.ggx = b.ggx;  // which the coat's share depends on
         if (!b.smooth) set_specular(b.specular_f0, b.specular_f90, b.ggx);
     }
     void operator()(const auto&) { reflects_alone = false; }

@@ -13,7 +13,8 @@
 namespace relumine {
 
 /// A reflecting BSDF seen from one side, in numbers that a kernel evaluates: a diffuse base under a coat and
-/// one GGX lobe. Lambert, RoughConductor and MetallicRoughness are such.
+/// one GGX lobe. Lambert, RoughConductor and MetallicRoughness are such; CoatedLayers and
+/// CoatedDiffuse are not and are gathered by Monte Carlo.
 struct ReceiverBsdf {
     Spectrum diffuse;
     Spectrum coat_f0, coat_f90;

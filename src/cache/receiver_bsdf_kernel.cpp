@@ -43,11 +43,22 @@ HWY_INLINE Spectrums schlick(Spectrum f0, Spectrum f90, VF grazing) {
 struct Prepared {
     const ReceiverBsdf& b;
     float a2, lambda_out, scale;  // of the specular lobe: D·G without what follows from w_in
+    float flat, steep;            // of grazing_albedo
+    Spectrum diffuse;             // times what the coat lets pass to w_out
 
     explicit Prepared(const ReceiverBsdf& bsdf) : b(bsdf), a2(sqr(bsdf.ggx.alpha)) {
         const Vec3 o = b.w_out.v;
         lambda_out = 0.5f * (std::sqrt(1 + a2 * (sqr(o.x) + sqr(o.y)) / sqr(o.z)) - 1);
         scale = a2 * inv_pi / (4 * o.z);
+        flat = std::max(1 - 6 * b.ggx.alpha, 0.0f);
+        steep = 20 * a2 / (b.ggx.alpha + 0.02f);
+        diffuse = b.diffuse;
+        if (b.coated)
+            diffuse *=
+                1
+                - std::min(
+                    1.0f,
+                    max_component(b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(o.z, b.ggx.alpha)));
     }
 };
 
@@ -69,8 +80,8 @@ HWY_INLINE Spectrums reflect(const Prepared& p, const Vec3s& w) {
     const ReceiverBsdf& b = p.b;
     const VF cosine = hn::Mul(w.z, constant(inv_pi));
     if (!b.specular && !b.coated)
-        return {hn::Mul(cosine, constant(b.diffuse.r)), hn::Mul(cosine, constant(b.diffuse.g)),
-                hn::Mul(cosine, constant(b.diffuse.b))};
+        return {hn::Mul(cosine, constant(p.diffuse.r)), hn::Mul(cosine, constant(p.diffuse.g)),
+                hn::Mul(cosine, constant(p.diffuse.b))};
     const Vec3s m{hn::Add(w.x, constant(b.w_out.v.x)), hn::Add(w.y, constant(b.w_out.v.y)),
                   hn::Add(w.z, constant(b.w_out.v.z))};
     const VF m_xy2 = hn::MulAdd(m.x, m.x, squared(m.y)), m_z2 = squared(m.z);
@@ -80,12 +91,17 @@ HWY_INLINE Spectrums reflect(const Prepared& p, const Vec3s& w) {
     const VF grazing = hn::Mul(squared(squared(x)), x);
     VF base = cosine;
     if (b.coated) {
-        const Spectrums coat = schlick(b.coat_f0, b.coat_f90, grazing);
+        const VF beside = hn::Min(hn::Max(hn::Sub(constant(1), w.z), constant(1e-3f)), constant(1));
+        const VF beside2 = squared(beside);
+        const VF part = hn::Min(hn::Div(hn::Mul(squared(beside2), beside),
+                                        hn::MulAdd(constant(p.steep), beside2, constant(p.flat))),
+                                constant(1));
+        const Spectrums coat = schlick(b.coat_f0, b.coat_f90, part);
         const VF most = hn::Max(coat.r, hn::Max(coat.g, coat.b));
         base = hn::Mul(base, hn::Max(hn::Sub(constant(1), most), constant(0)));
     }
-    Spectrums out{hn::Mul(base, constant(b.diffuse.r)), hn::Mul(base, constant(b.diffuse.g)),
-                  hn::Mul(base, constant(b.diffuse.b))};
+    Spectrums out{hn::Mul(base, constant(p.diffuse.r)), hn::Mul(base, constant(p.diffuse.g)),
+                  hn::Mul(base, constant(p.diffuse.b))};
     if (!b.specular) return out;
     const VF specular = lobe(p, w, m_xy2, m_z2, length2);
     const Spectrums fresnel = schlick(b.specular_f0, b.specular_f90, grazing);

@@ -81,8 +81,16 @@ HWY_INLINE V3 schlick(V3 f0, V3 f90, VF cosine) {
     return f0 + (f90 - f0) * (squared(squared(x)) * x);
 }
 
+HWY_INLINE VF grazing_albedo(VF cosine, VF alpha) {
+    const VF x = hn::Min(hn::Max(constant(1) - cosine, constant(1e-3f)), constant(1)), x2 = squared(x);
+    const VF flat = hn::Max(constant(1) - constant(6) * alpha, zero());
+    const VF steep = constant(20) * squared(alpha) / (alpha + constant(0.02f));
+    return hn::Min(squared(x2) * x / (flat + steep * x2), constant(1));
+}
+
 HWY_INLINE VF coat_transmittance(const Layers& b, VF cosine) {
-    return constant(1) - hn::Min(constant(1), max_component(schlick(b.coat_f0, b.coat_f90, cosine)));
+    const V3 reflected = b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(cosine, b.alpha);
+    return constant(1) - hn::Min(constant(1), max_component(reflected));
 }
 
 HWY_INLINE VF specular_probability(const Layers& b, V3 w_out) {
@@ -124,7 +132,8 @@ struct Values {
 HWY_INLINE Values evaluate_layers(const Layers& b, V3 w_out, V3 w_in, VF probability) {
     const V3 m = normalize(w_out + w_in);
     const VF cosine = dot(w_in, m), diffuse_pdf = w_in.z * constant(inv_pi), a2 = squared(b.alpha);
-    const V3 diffuse = b.diffuse * (diffuse_pdf * coat_transmittance(b, cosine));
+    const V3 diffuse =
+        b.diffuse * (diffuse_pdf * coat_transmittance(b, w_out.z) * coat_transmittance(b, w_in.z));
     const VF density = ggx_density(a2, m);
     const V3 specular = schlick(b.specular_f0, b.specular_f90, cosine)
                         * (density * ggx_masking_shadowing(b, a2, w_out, w_in) / (constant(4) * w_out.z));

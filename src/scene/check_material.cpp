@@ -73,6 +73,10 @@ void MaterialChecker::factors() const {
     factor(material_.transmission, "transmission");
     factor(material_.attenuation_color, "attenuation colour");
     factor(material_.diffuse_transmission, "diffuse transmission");
+    factor(material_.clearcoat, "clearcoat");
+    factor(material_.clearcoat_roughness, "clearcoat roughness");
+    factor(material_.sheen_color, "sheen colour");
+    factor(material_.sheen_roughness, "sheen roughness");
     // KHR_materials_specular lets the colour exceed 1; the reflectance that it scales is clamped when shading
     at_least(std::min({material_.specular_color.r, material_.specular_color.g, material_.specular_color.b}),
              0, "specular colour");
@@ -88,6 +92,10 @@ void MaterialChecker::textures() const {
     texture(material_.specular_color_texture, "specular colour texture");
     texture(material_.transmission_texture, "transmission texture");
     texture(material_.diffuse_transmission_texture, "diffuse transmission texture");
+    texture(material_.clearcoat_texture, "clearcoat texture");
+    texture(material_.clearcoat_roughness_texture, "clearcoat roughness texture");
+    texture(material_.sheen_color_texture, "sheen colour texture");
+    texture(material_.sheen_roughness_texture, "sheen roughness texture");
 }
 
 void MaterialChecker::texture(const std::optional<TextureRef>& ref, std::string_view what) const {

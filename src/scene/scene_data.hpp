@@ -65,7 +65,12 @@ struct Material {
     float attenuation_distance = infinity;  // metres
     bool coated_diffuse = false;            // the model CoatedDiffuse: base = base_color / specular
     Spectrum diffuse_transmission;  // not black: the model DiffuseTransmission; base_color is reflected
-    std::optional<TextureRef> diffuse_transmission_texture;  // RGB, sRGB
+    std::optional<TextureRef> diffuse_transmission_texture;                    // RGB, sRGB
+    float clearcoat = 0, clearcoat_roughness = 0;                              // KHR_materials_clearcoat
+    std::optional<TextureRef> clearcoat_texture, clearcoat_roughness_texture;  // R; G
+    Spectrum sheen_color;                                                      // KHR_materials_sheen
+    float sheen_roughness = 0;
+    std::optional<TextureRef> sheen_color_texture, sheen_roughness_texture;  // RGB, sRGB; A
 };
 
 struct Triangle {

@@ -41,17 +41,20 @@ void add(Fingerprint& print, const Material& material) {
                  metallic_roughness_texture, normal_texture, normal_scale, emission, emission_texture,
                  alpha_mode, alpha_cutoff, double_sided, ior, specular, specular_texture, specular_color,
                  specular_color_texture, transmission, transmission_texture, solid, attenuation_color,
-                 attenuation_distance, coated_diffuse, diffuse_transmission, diffuse_transmission_texture] =
-        material;
+                 attenuation_distance, coated_diffuse, diffuse_transmission, diffuse_transmission_texture,
+                 clearcoat, clearcoat_roughness, clearcoat_texture, clearcoat_roughness_texture, sheen_color,
+                 sheen_roughness, sheen_color_texture, sheen_roughness_texture] = material;
     (void)name;
     for (const Spectrum& colour :
-         {base_color, emission, specular_color, attenuation_color, diffuse_transmission})
+         {base_color, emission, specular_color, attenuation_color, diffuse_transmission, sheen_color})
         add(print, colour);
     add_each(print, base_alpha, metallic, roughness, normal_scale, alpha_mode, alpha_cutoff, double_sided,
-             ior, specular, transmission, solid, attenuation_distance, coated_diffuse);
+             ior, specular, transmission, solid, attenuation_distance, coated_diffuse, clearcoat,
+             clearcoat_roughness, sheen_roughness);
     for (const auto* texture :
          {&base_color_texture, &metallic_roughness_texture, &normal_texture, &emission_texture,
-          &specular_texture, &specular_color_texture, &transmission_texture, &diffuse_transmission_texture})
+          &specular_texture, &specular_color_texture, &transmission_texture, &diffuse_transmission_texture,
+          &clearcoat_texture, &clearcoat_roughness_texture, &sheen_color_texture, &sheen_roughness_texture})
         add(print, *texture);
 }
 

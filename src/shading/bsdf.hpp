@@ -58,9 +58,10 @@ struct RoughDielectric {
 };
 
 /// glTF's opaque layering: a dielectric coat over a diffuse base, mixed with a metal of the same roughness
-/// [glTF 2.0, appendix B].
+/// [glTF 2.0, appendix B], where the coat lets T(w_out) · T(w_in) / mean T of the base's light pass, so that
+/// all together reflect no more than arrives.
 struct MetallicRoughness {
-    Spectrum diffuse;                    // albedo under the coat
+    Spectrum diffuse;                    // albedo under the coat over mean_coat_transmittance
     Spectrum coat_f0, coat_f90;          // of the coat: what it reflects, the base does not get
     Spectrum specular_f0, specular_f90;  // of coat and metal together, weighted
     Ggx ggx;
@@ -78,6 +79,20 @@ struct CoatedDiffuse {
     bool coated = true;   // false: the base's light alone
 };
 
+/// The layering under sheen, and both under a clear coat [KHR_materials_sheen, KHR_materials_clearcoat]. What
+/// a layer reflects, those below do not get: their lobes have the lesser of its transmittances towards w_out
+/// and w_in, the diffuse base the product of both.
+struct CoatedLayers {
+    MetallicRoughness
+        base;             // `diffuse` is the albedo over the mean transmittance of all layers: see layered()
+    float clearcoat = 0;  // [0, 1], of a coat of index 1.5
+    Ggx clearcoat_ggx;
+    bool clearcoat_smooth = false;   // the clear coat's reflection is a delta
+    bool clearcoat_reflects = true;  // false: it is there for what it takes alone
+    Spectrum sheen;                  // colour; black: none
+    float sheen_alpha = 1;           // in [least_sheen_alpha, 1]
+};
+
 /// Diffuse reflection, and diffuse transmission to the other side.
 struct DiffuseTransmission {
     Spectrum reflectance, transmittance;
@@ -90,7 +105,7 @@ struct BsdfValue {
 };
 
 using Bsdf = std::variant<Lambert, Mirror, RoughConductor, SmoothDielectric, RoughDielectric,
-                          MetallicRoughness, CoatedDiffuse, DiffuseTransmission>;
+                          MetallicRoughness, CoatedDiffuse, DiffuseTransmission, CoatedLayers>;
 
 #define RELUMINE_DECLARE_BSDF(Model)                                                                  \
     [[nodiscard]] Spectrum eval(const Model&, LocalDir w_out, LocalDir w_in); /* f·|cos θ|, 1/sr */ \
@@ -107,6 +122,7 @@ RELUMINE_DECLARE_BSDF(RoughDielectric)
 RELUMINE_DECLARE_BSDF(MetallicRoughness)
 RELUMINE_DECLARE_BSDF(CoatedDiffuse)
 RELUMINE_DECLARE_BSDF(DiffuseTransmission)
+RELUMINE_DECLARE_BSDF(CoatedLayers)
 #undef RELUMINE_DECLARE_BSDF
 
 /// Both of a model's functions, in one where that saves work.
@@ -151,9 +167,18 @@ inline bool has_lobes(const Bsdf& bsdf) {
 
 /// The same of a coat.
 [[nodiscard]] float coat_delta_probability(const CoatedDiffuse& bsdf, LocalDir w_out);
+[[nodiscard]] float coat_delta_probability(const CoatedLayers& bsdf, LocalDir w_out);
 
 /// What is left of a BSDF that is not all delta when its delta lobe is taken away.
 [[nodiscard]] Bsdf without_delta(const Bsdf& bsdf);
+[[nodiscard]] CoatedLayers without_coat_delta(const CoatedLayers& bsdf);
+
+/// ∫ T cos θ / π dω: what the coat lets pass of light from everywhere.
+[[nodiscard]] float mean_coat_transmittance(Spectrum coat_f0, Spectrum coat_f90, const Ggx& ggx);
+
+/// `layers`, whose `base.diffuse` is still an albedo, with that over the mean transmittance of all layers
+/// above it.
+[[nodiscard]] CoatedLayers layered(CoatedLayers layers);
 
 /// An approximation of the share of light that is reflected or transmitted at normal incidence, for the
 /// albedo layer.

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/sample_stream.hpp"
+#include "shading/reflectance.hpp"
 #include "shading/sampling.hpp"
 #include "tests/statistics.hpp"
 
@@ -23,6 +24,24 @@ LocalDir direction(float cosine, float phi) {
 }
 
 Ggx ggx(float alpha) { return {alpha, Masking::correlated}; }
+
+/// A dielectric of index 1.5 over `diffuse`, which is not yet divided by the coat's mean transmittance.
+MetallicRoughness plastic(Spectrum diffuse, float alpha) {
+    return {diffuse, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, ggx(alpha)};
+}
+
+CoatedLayers coated(const MetallicRoughness& base, float clearcoat, float alpha) {
+    CoatedLayers layers;
+    layers.base = base;
+    layers.clearcoat = clearcoat;
+    layers.clearcoat_ggx = ggx(alpha);
+    return layers;
+}
+CoatedLayers with_sheen(CoatedLayers layers, Spectrum color, float alpha) {
+    layers.sheen = color;
+    layers.sheen_alpha = alpha;
+    return layers;
+}
 
 struct NamedBsdf {
     const char* name;
@@ -45,6 +64,13 @@ const std::vector<NamedBsdf>& rough_bsdfs() {
                                             Spectrum{0.5f}, ggx(0.2f)}},
         {"coated diffuse", CoatedDiffuse{Spectrum{0.4f, 0.3f, 0.1f}, 1.5f, ggx(0.25f)}},
         {"diffuse transmission", DiffuseTransmission{Spectrum{0.3f}, Spectrum{0.5f, 0.4f, 0.2f}}},
+        {"clear coat", layered(coated(plastic(Spectrum{0.7f, 0.4f, 0.2f}, 0.4f), 1, 0.15f))},
+        {"clear coat on metal",
+         layered(coated({{}, {}, {}, Spectrum{0.9f, 0.6f, 0.3f}, Spectrum{1}, ggx(0.3f)}, 0.7f, 0.12f))},
+        {"sheen", layered(with_sheen(coated(plastic(Spectrum{0.5f, 0.3f, 0.2f}, 0.5f), 0, 1),
+                                     Spectrum{0.9f, 0.6f, 0.3f}, 0.3f))},
+        {"sheen under coat", layered(with_sheen(coated(plastic(Spectrum{0.3f}, 0.6f), 0.8f, 0.2f),
+                                                Spectrum{0.5f, 0.8f, 0.9f}, 0.6f))},
     };
     return all;
 }
@@ -235,6 +261,75 @@ TEST(Bsdf, SmoothCoatSplitsIntoDeltaAndDiffuse) {
     EXPECT_NEAR(diffuse, rest, 0.01);
     EXPECT_GT(delta_probability(coat, w_out), 0);
     EXPECT_EQ(delta_probability(without_delta(coat), w_out), 0);
+}
+
+/// The largest and the smallest albedo of white bodies in a white furnace, over views.
+struct Extremes {
+    double least = 1, most = 0;
+    void add(const Bsdf& bsdf) {
+        for (const float cosine : {0.02f, 0.06f, 0.15f, 0.4f, 0.7f, 0.98f}) {
+            const auto [mean, error, count] = directional_albedo(bsdf, direction(cosine, 0));
+            least = std::min(least, mean);
+            most = std::max(most, mean - 4 * error);
+        }
+    }
+};
+
+TEST(Bsdf, LayersOverWhiteReflectNoMoreThanArrives) {
+    Extremes coats, clearcoats, sheens;
+    for (const float alpha : {0.002f, 0.03f, 0.15f, 0.4f, 1.0f}) {
+        CoatedLayers white = coated(plastic(Spectrum{1}, alpha), 0, 1);
+        coats.add(layered(white));
+        white.clearcoat = 1;
+        for (const float over : {0.004f, 0.3f}) {
+            white.clearcoat_ggx = ggx(over);
+            clearcoats.add(layered(white));
+        }
+        const CoatedLayers cloth =
+            with_sheen(coated(plastic(Spectrum{1}, 0.5f), 0, 1), Spectrum{1}, std::max(alpha, 0.01f));
+        sheens.add(layered(cloth));
+    }
+    EXPECT_LT(coats.most, 1.001);
+    EXPECT_GT(coats.least, 0.8);  // single scattering and the bound's slack, both at grazing views
+    EXPECT_LT(clearcoats.most, 1.001);
+    EXPECT_GT(clearcoats.least, 0.8);
+    EXPECT_LT(sheens.most, 1.003);  // interpolation in the table
+    EXPECT_GT(sheens.least, 0.8);
+}
+
+TEST(Bsdf, FurnaceCatchesCoatsThatTakeNothing) {
+    CoatedLayers white = coated(plastic(Spectrum{1}, 0.3f), 1, 0.1f);
+    white.base.coat_f0 = white.base.coat_f90 = {};  // the base does not lose what the coat reflects
+    Extremes gained;
+    gained.add(layered(white));
+    EXPECT_GT(gained.most, 1.03);
+}
+
+TEST(Bsdf, GrazingAlbedoIsAnUpperBoundOfTheLobes) {
+    for (int i = 0; i <= 30; ++i)
+        for (int j = 1; j <= 30; ++j) {
+            const float alpha = std::max(sqr(static_cast<float>(i) / 30), smooth_alpha);
+            const float cosine = sqr(static_cast<float>(j) / 30);
+            const float lobe = lobe_albedo(cosine, ggx(alpha)).f90;
+            EXPECT_GT(grazing_albedo(cosine, alpha), lobe - 0.006f) << alpha << " " << cosine;
+        }
+}
+
+TEST(Bsdf, SmoothClearCoatSplitsIntoDeltaAndTheRest) {
+    CoatedLayers lacquer = coated(plastic(Spectrum{0.8f, 0.3f, 0.2f}, 0.3f), 1, smooth_alpha);
+    lacquer.clearcoat_smooth = true;
+    lacquer = layered(lacquer);
+    const LocalDir w_out = direction(0.5f, 0.4f);
+    double delta = 0, rest = 0;
+    constexpr int n = 100'000;
+    for (std::uint32_t i = 0; i < n; ++i)
+        if (const auto s = sample(lacquer, w_out, random_numbers(5, i)))
+            (s->delta ? delta : rest) += s->weight.r / n;
+    EXPECT_NEAR(delta, schlick(Spectrum{0.04f}, Spectrum{1}, 0.5f).r, 2e-3);
+    const Bsdf without = without_delta(lacquer);
+    EXPECT_NEAR(rest, directional_albedo(without, w_out).mean, 0.01);
+    EXPECT_GT(delta_probability(lacquer, w_out), 0.01f);
+    EXPECT_EQ(delta_probability(without, w_out), 0);
 }
 
 TEST(Fresnel, MatchesClosedForms) {

@@ -2,6 +2,7 @@
 // Materials at points.
 #include "shading/material.hpp"
 
+#include "shading/coat.hpp"
 #include "shading/texture.hpp"
 
 namespace relumine {
@@ -81,9 +82,46 @@ Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking)
     const Spectrum coat_f0 = clamped(f.specular_color * sqr((ior - 1) / (ior + 1))) * f.specular;
     const Spectrum coat_f90{f.specular};
     if (metallic <= 0 && f.specular <= 0) return Lambert{f.base_color};
-    return MetallicRoughness{
-        f.base_color * (1 - metallic),         coat_f0, coat_f90, lerp(coat_f0, f.base_color, metallic),
-        lerp(coat_f90, Spectrum{1}, metallic), ggx,     smooth};
+    const float below = mean_coat_transmittance(coat_f0, coat_f90, ggx);
+    return MetallicRoughness{f.base_color * ((1 - metallic) / std::max(below, 1e-3f)),
+                             coat_f0,
+                             coat_f90,
+                             lerp(coat_f0, f.base_color, metallic),
+                             lerp(coat_f90, Spectrum{1}, metallic),
+                             ggx,
+                             smooth};
+}
+
+bool is_coated(const Material& m) { return m.clearcoat > 0 || !is_black(m.sheen_color); }
+
+/// The layering with sheen and clear coat over it; metals and bare diffuse surfaces become layerings too.
+Bsdf coated_layers(const SceneData& scene, const SurfacePoint& p, const Bsdf& base, Masking masking) {
+    const Material& m = *p.material;
+    CoatedLayers layers;
+    if (const auto* below = std::get_if<MetallicRoughness>(&base)) {
+        layers.base = *below;
+        layers.base.diffuse *= mean_coat_transmittance(below->coat_f0, below->coat_f90, below->ggx);
+    } else if (const auto* mirror = std::get_if<Mirror>(&base)) {
+        layers.base = {{}, {}, {}, mirror->f0, Spectrum{1}, {smooth_alpha, masking}, true};
+    } else {
+        layers.base = *as_layers(base);
+    }
+    layers.clearcoat = m.clearcoat;
+    if (m.clearcoat_texture)
+        layers.clearcoat *= sample_texture(scene, *m.clearcoat_texture, p.uv, Encoding::linear).x;
+    float roughness = m.clearcoat_roughness;
+    if (m.clearcoat_roughness_texture)
+        roughness *= sample_texture(scene, *m.clearcoat_roughness_texture, p.uv, Encoding::linear).y;
+    layers.clearcoat_smooth = sqr(roughness) < smooth_alpha;
+    layers.clearcoat_ggx = {std::clamp(sqr(roughness), smooth_alpha, 1.0f), masking};
+    layers.sheen = m.sheen_color;
+    if (m.sheen_color_texture)
+        layers.sheen *= rgb(sample_texture(scene, *m.sheen_color_texture, p.uv, Encoding::srgb));
+    roughness = m.sheen_roughness;
+    if (m.sheen_roughness_texture)
+        roughness *= sample_texture(scene, *m.sheen_roughness_texture, p.uv, Encoding::linear).w;
+    layers.sheen_alpha = std::clamp(sqr(roughness), least_sheen_alpha, 1.0f);
+    return layered(layers);
 }
 
 Bsdf coated_diffuse(const Factors& f, float ior, Masking masking) {
@@ -107,7 +145,8 @@ Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, f
     if (p.material->coated_diffuse) return coated_diffuse(f, p.material->ior, masking);
     if (!is_black(p.material->diffuse_transmission)) return diffuse_transmission(scene, p, f);
     if (u < glass_share(f)) return glass(p, f, masking);
-    return opaque_layers(f, opaque_metal(f), p.material->ior, masking);
+    const Bsdf base = opaque_layers(f, opaque_metal(f), p.material->ior, masking);
+    return is_coated(*p.material) ? coated_layers(scene, p, base, masking) : base;
 }
 
 Pane pane_kind(const SceneData& scene, const Mesh& mesh) {
@@ -147,7 +186,9 @@ UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(sce
     for (const Material& m : scene.materials) {
         const bool varies = m.base_color_texture || m.metallic_roughness_texture || m.transmission_texture
                             || m.specular_texture || m.specular_color_texture || m.transmission > 0
-                            || m.diffuse_transmission_texture;
+                            || m.diffuse_transmission_texture || m.clearcoat_texture
+                            || m.clearcoat_roughness_texture || m.sheen_color_texture
+                            || m.sheen_roughness_texture;
         SurfacePoint anywhere;
         anywhere.material = &m;
         bsdfs_.push_back(varies ? std::nullopt : std::optional(make_bsdf(scene, anywhere, masking, 0)));

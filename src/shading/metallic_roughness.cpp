@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The glTF layering of coat, diffuse base and metal.
 #include "shading/bsdf.hpp"
+#include "shading/coat.hpp"
 #include "shading/sampling.hpp"
 
 namespace relumine {
 namespace {
-
-/// What reaches the diffuse base through the coat at a facet that `cosine` looks at [glTF 2.0, §B.3.4].
-float coat_transmittance(const MetallicRoughness& b, float cosine) {
-    return 1 - std::min(1.0f, max_component(schlick(b.coat_f0, b.coat_f90, cosine)));
-}
 
 /// The probability of sampling the specular lobe, by the lobes' rough shares of the reflected light.
 float specular_probability(const MetallicRoughness& b, LocalDir w_out) {
@@ -24,7 +20,9 @@ BsdfValue evaluate(const MetallicRoughness& b, LocalDir w_out, LocalDir w_in, fl
     if (cos_theta(w_in) <= 0) return {};
     const LocalDir m{normalize(w_out.v + w_in.v)};
     const float cosine = dot(w_in.v, m.v), diffuse_pdf = cos_theta(w_in) * inv_pi;
-    const Spectrum diffuse = b.diffuse * (diffuse_pdf * coat_transmittance(b, cosine));
+    const Spectrum diffuse =
+        b.diffuse
+        * (diffuse_pdf * coat_transmittance(b, cos_theta(w_out)) * coat_transmittance(b, cos_theta(w_in)));
     if (b.smooth) return {diffuse, (1 - specular_probability) * diffuse_pdf};
     const float density = ggx_density(b.ggx, m);
     const Spectrum specular =
@@ -62,6 +60,7 @@ std::optional<BsdfSample> sample(const MetallicRoughness& b, LocalDir w_out, Bsd
 float delta_probability(const Bsdf& bsdf, LocalDir w_out) {
     if (is_delta(bsdf)) return 1;
     if (const auto* coated = std::get_if<CoatedDiffuse>(&bsdf)) return coat_delta_probability(*coated, w_out);
+    if (const auto* coated = std::get_if<CoatedLayers>(&bsdf)) return coat_delta_probability(*coated, w_out);
     const auto* layers = std::get_if<MetallicRoughness>(&bsdf);
     return layers && layers->smooth ? specular_probability(*layers, w_out) : 0.0f;
 }
@@ -72,6 +71,7 @@ Bsdf without_delta(const Bsdf& bsdf) {
         base.coated = base.coated && !base.smooth;
         return base;
     }
+    if (const auto* coated = std::get_if<CoatedLayers>(&bsdf)) return without_coat_delta(*coated);
     const auto* layers = std::get_if<MetallicRoughness>(&bsdf);
     if (!layers || !layers->smooth) return bsdf;
     MetallicRoughness diffuse = *layers;
@@ -87,11 +87,17 @@ Spectrum albedo(const Bsdf& bsdf) {
         Spectrum operator()(const SmoothDielectric& b) const { return b.tint; }
         Spectrum operator()(const RoughDielectric& b) const { return b.tint; }
         Spectrum operator()(const MetallicRoughness& b) const {
-            return b.diffuse * (1 - std::min(1.0f, max_component(b.coat_f0))) + b.specular_f0;
+            const float through = coat_transmittance(b, 1);
+            return b.diffuse * (through * mean_coat_transmittance(b.coat_f0, b.coat_f90, b.ggx))
+                   + b.specular_f0;
         }
         Spectrum operator()(const CoatedDiffuse& b) const {
             const float reflected = b.coated ? fresnel_dielectric(1, b.eta) : 0.0f;
             return b.base * sqr(1 - fresnel_dielectric(1, b.eta)) + Spectrum{reflected};
+        }
+        Spectrum operator()(const CoatedLayers& b) const {
+            const float coat = 0.04f * b.clearcoat;
+            return ((*this)(b.base) + b.sheen * sheen_albedo(1, b.sheen_alpha)) * (1 - coat) + Spectrum{coat};
         }
         Spectrum operator()(const DiffuseTransmission& b) const { return b.reflectance + b.transmittance; }
     };

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "shading/coat.hpp"
+
 namespace relumine {
 namespace {
 
@@ -25,16 +27,6 @@ void over_square(int side, const Add& add) {
                        (static_cast<float>(j) + 0.5f) / static_cast<float>(side)});
 }
 
-float integrate_coat(LocalDir w_out) {
-    float sum = 0;
-    constexpr int side = 2 * strata;
-    over_square(side, [&](Point2 u) {
-        const Vec3 h = normalize(w_out.v + cosine_hemisphere(u).v);
-        sum += fifth_power(1 - dot(w_out.v, h));
-    });
-    return sum / sqr(static_cast<float>(side));
-}
-
 LobeAlbedo integrate_lobe(LocalDir w_out, const Ggx& ggx) {
     LobeAlbedo sum{0, 0};
     over_square(strata, [&](Point2 u) {
@@ -53,13 +45,11 @@ LobeAlbedo integrate_lobe(LocalDir w_out, const Ggx& ggx) {
 }
 
 struct Tables {
-    std::array<float, cosines> coat{};
     std::array<std::array<std::array<LobeAlbedo, roughnesses>, cosines>, 2> lobe{};  // by masking
 
     Tables() {
         for (int i = 0; i < cosines; ++i) {
             const auto row = static_cast<std::size_t>(i);
-            coat[row] = integrate_coat(view(cosine_at(i)));
             for (const Masking masking : {Masking::correlated, Masking::separable})
                 for (int j = 0; j < roughnesses; ++j)
                     lobe[static_cast<std::size_t>(masking)][row][static_cast<std::size_t>(j)] =
@@ -127,9 +117,9 @@ struct Splitter {
                 followed_alpha};
     }
     LobeSplit operator()(const MetallicRoughness& b) const {
-        const float f0 = max_component(b.coat_f0), f90 = max_component(b.coat_f90);
-        const float coat = f0 + (f90 - f0) * coat_albedo(cos_theta(w_out));
-        LobeSplit split{b.diffuse * (1 - std::min(coat, 1.0f)), {}, {}, false, 0};
+        const float coat =
+            coat_transmittance(b, cos_theta(w_out)) * mean_coat_transmittance(b.coat_f0, b.coat_f90, b.ggx);
+        LobeSplit split{b.diffuse * coat, {}, {}, false, 0};
         if (is_black(b.specular_f90) && is_black(b.specular_f0)) return split;
         if (b.smooth) {
             split.glossy = schlick(b.specular_f0, b.specular_f90, cos_theta(w_out));
@@ -143,14 +133,33 @@ struct Splitter {
         split.lobes = lobes;
         return split;
     }
+    LobeSplit operator()(const CoatedLayers& b) const {
+        const CoatedAlbedos albedos = coated_albedos(b, w_out);
+        LobeSplit split{albedos.diffuse, albedos.sheen, {}, false, 1};
+        const bool no_specular = is_black(b.base.specular_f0) && is_black(b.base.specular_f90);
+        const bool all_smooth = (no_specular || b.base.smooth) && (b.clearcoat <= 0 || b.clearcoat_smooth);
+        const LobeSplit base = (*this)(b.base);
+        split.glossy += base.glossy * albedos.through;
+        if (b.clearcoat > 0 && b.clearcoat_reflects) {
+            LobeAlbedo a{1, 0};
+            if (b.clearcoat_smooth)
+                a = {1 - fifth_power(1 - cos_theta(w_out)), fifth_power(1 - cos_theta(w_out))};
+            else
+                a = lobe_albedo(cos_theta(w_out), b.clearcoat_ggx);
+            split.glossy += Spectrum{b.clearcoat * (0.04f * a.f0 + a.f90)};
+            split.alpha = std::min(split.alpha, b.clearcoat_ggx.alpha);
+        }
+        if (!no_specular) split.alpha = std::min(split.alpha, b.base.ggx.alpha);
+        if (is_black(split.glossy)) return split;
+        if (all_smooth && is_black(b.sheen)) split.alpha = 0;
+        CoatedLayers lobes = b;
+        lobes.base.diffuse = {};
+        split.lobes = lobes;
+        return split;
+    }
 };
 
 }  // namespace
-
-float coat_albedo(float cosine) {
-    const Place p = place_of(cosine, cosines);
-    return lerp(tables().coat[p.entry], tables().coat[p.entry + 1], p.beyond);
-}
 
 LobeAlbedo lobe_albedo(float cosine, const Ggx& ggx) {
     const auto& table = tables().lobe[static_cast<std::size_t>(ggx.masking)];

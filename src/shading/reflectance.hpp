@@ -20,10 +20,6 @@ struct LobeSplit {
 /// channels of a coat's reflectance differ by more than a scale, the largest counts.
 [[nodiscard]] LobeSplit split_lobes(const Bsdf& bsdf, LocalDir w_out);
 
-/// ∫ (1 − w_out · h)⁵ cos θ_in / π dω_in over the hemisphere, h the half vector: what Schlick's term of a
-/// coat takes of a diffuse base's light. `cosine` of w_out in [0, 1].
-[[nodiscard]] float coat_albedo(float cosine);
-
 /// ∫ D·G / (4 cos θ_out) · {1 − (1 − w_out · h)⁵, (1 − w_out · h)⁵} dω_in: the factors of f0 and f90 in the
 /// albedo of a GGX lobe [Karis13].
 struct LobeAlbedo {

@@ -46,6 +46,23 @@ TEST(Reflectance, PartsAddUpToTheWhole) {
         }
 }
 
+TEST(Reflectance, PartsOfCoatedLayersAddUpToTheWhole) {
+    CoatedLayers layers;
+    layers.base = layered(0.5f);
+    layers.clearcoat = 0.8f;
+    layers.clearcoat_ggx = {0.3f, Masking::correlated};
+    layers.sheen = {0.3f, 0.2f, 0.1f};
+    layers.sheen_alpha = 0.4f;
+    for (const float cosine : {0.4f, 0.77f, 0.99f}) {
+        const Bsdf bsdf = relumine::layered(layers);
+        const LobeSplit split = split_lobes(bsdf, view(cosine));
+        SCOPED_TRACE(testing::Message() << "cosine " << cosine);
+        expect_near(split.diffuse + split.glossy, albedo_by_sampling(bsdf, view(cosine)), 0.015f);
+        ASSERT_TRUE(split.lobes.has_value());
+        expect_near(split.glossy, albedo_by_sampling(*split.lobes, view(cosine)), 0.015f);
+    }
+}
+
 TEST(Reflectance, ConductorsAreAllLobe) {
     for (const Masking masking : {Masking::correlated, Masking::separable}) {
         const Bsdf bsdf = RoughConductor{Spectrum{0.9f, 0.6f, 0.3f}, {0.4f, masking}};
