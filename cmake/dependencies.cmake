@@ -15,6 +15,12 @@ find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(TinyGLTF REQUIRED)
 find_package(tinyobjloader REQUIRED)
+find_package(draco REQUIRED)
+find_package(meshoptimizer REQUIRED)
+# Debian's libdraco holds another version of TinyGLTF and shows its symbols: ours has to come before it, or we call theirs.
+set_property(TARGET TinyGLTF::TinyGLTF APPEND PROPERTY INTERFACE_LINK_LIBRARIES draco::draco)
+find_library(RELUMINE_WEBP webp REQUIRED)  # its package brings no CMake files
+mark_as_advanced(RELUMINE_WEBP)
 find_package(CLI11 REQUIRED)
 find_package(Threads REQUIRED)
 if(RELUMINE_BUILD_TESTS)

@@ -109,6 +109,15 @@ class Checker {
         return copy;
     }
 
+    [[nodiscard]] json integer_map(const json& value, const GltfField& field,
+                                   const std::string& place) const {
+        if (!value.is_object()) refuse(place, "an object", value);
+        json copy = json::object();
+        for (const auto& [name, element] : value.items())
+            copy[name] = integer(element, field.lower, field.upper, place + '.' + quote(name));
+        return copy;
+    }
+
     [[nodiscard]] json string(const json& value, const std::string& place) const {
         if (!value.is_string()) refuse(place, "a string", value);
         return value;
@@ -128,6 +137,8 @@ class Checker {
                 return object(value, field, place);
             case GltfKind::index_map:
                 return index_map(value, field, place);
+            case GltfKind::integer_map:
+                return integer_map(value, field, place);
             case GltfKind::boolean:
                 if (!value.is_boolean()) refuse(place, "true or false", value);
                 return value;

@@ -9,6 +9,7 @@
 #include "base/message.hpp"
 #include "relumine/error.hpp"
 #include "scene/gltf_document.hpp"
+#include "scene/gltf_meshopt.hpp"
 #include "scene/quote.hpp"
 #include "scene/reference.hpp"
 
@@ -18,6 +19,12 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t max_referenced_bytes = std::size_t{8} << 30;  // all buffers together
+
+/// Whether the buffer is there for readers without EXT_meshopt_compression alone.
+bool is_fallback(const json& buffer) {
+    const json::json_pointer flag{"/extensions/EXT_meshopt_compression/fallback"};
+    return buffer.contains(flag) && buffer.at(flag).get<bool>();
+}
 
 /// The bytes of buffer `i`, cut to its byteLength.
 std::span<const std::uint8_t> load_buffer(GltfFile& file, const json& buffer, std::size_t i) {
@@ -29,6 +36,8 @@ std::span<const std::uint8_t> load_buffer(GltfFile& file, const json& buffer, st
         bytes = file.loaded.back();
     } else if (i == 0 && file.container.binary) {
         bytes = *file.container.binary;
+    } else if (is_fallback(buffer)) {
+        return {};  // what its views hold is unpacked from another buffer
     } else {
         throw SceneError{expected_found(file.where(place + ".uri"), "a value", "nothing")};
     }
@@ -69,6 +78,7 @@ void load_images(GltfFile& file, const json& images) {
 void check_buffer_views(const GltfFile& file) {
     for (std::size_t i = 0; i < file.model.bufferViews.size(); ++i) {
         const auto& view = file.model.bufferViews[i];
+        if (view.extensions.contains("EXT_meshopt_compression")) continue;
         const std::size_t size = file.buffers[to_size(view.buffer)].size();
         const std::string place = fmt::format("bufferViews[{}]", i);
         if (view.byteOffset > size)
@@ -80,6 +90,15 @@ void check_buffer_views(const GltfFile& file) {
                                             fmt::format("at most {}", size - view.byteOffset),
                                             fmt::format("{}", view.byteLength))};
     }
+}
+
+/// TinyGLTF refuses indices without a buffer view, which those that Draco packs have no need of.
+void drop_packed_indices(json& document) {
+    if (!document.contains("meshes")) return;
+    for (json& mesh : document["meshes"])
+        for (json& primitive : mesh["primitives"])
+            if (primitive.contains(json::json_pointer{"/extensions/KHR_draco_mesh_compression"}))
+                primitive.erase("indices");
 }
 
 /// The message's first line.
@@ -108,15 +127,18 @@ GltfFile read_gltf_file(const std::string& path) {
     const json images = document.value("images", json::array());
     document.erase("buffers");
     document.erase("images");
+    drop_packed_indices(document);
     file.model = parse_model(document, path);
     load_buffers(file, buffers);
     load_images(file, images);
     check_buffer_views(file);
+    unpack_gltf_views(file);
     return file;
 }
 
 std::span<const std::uint8_t> view_bytes(const GltfFile& file, int buffer_view) {
     const auto& view = file.model.bufferViews[to_size(buffer_view)];
+    if (const auto it = file.unpacked.find(buffer_view); it != file.unpacked.end()) return it->second;
     return file.buffers[to_size(view.buffer)].subspan(view.byteOffset, view.byteLength);
 }
 

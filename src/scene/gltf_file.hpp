@@ -10,6 +10,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct GltfFile {
         buffers;  // of exactly `byteLength` bytes, into `container` or `loaded`
     GltfContainer container;
     std::vector<std::vector<std::uint8_t>> loaded;
+    std::map<int, std::vector<std::uint8_t>> unpacked;  // buffer views that were compressed
     std::vector<std::string> warnings;
 
     /// "kitchen.glb: place".

@@ -246,8 +246,7 @@ std::vector<Damage> node_damages() {
         set("VersionIsNumber", "/asset/version", 2.0, "asset.version"),
         set("NewerMinimum", "/asset/minVersion", "2.1", "asset.minVersion"),
         set("UnknownRequiredExtension", "/extensionsRequired", {"XYZ_magic"}, "\"XYZ_magic\""),
-        set("DracoRequired", "/extensionsRequired", {"KHR_draco_mesh_compression"},
-            "\"KHR_draco_mesh_compression\""),
+        set("BasisRequired", "/extensionsRequired", {"KHR_texture_basisu"}, "\"KHR_texture_basisu\""),
         set("RequiredIsText", "/extensionsRequired", "KHR_materials_ior", "extensionsRequired"),
     };
 }
@@ -280,6 +279,43 @@ std::vector<Damage> content_damages() {
         with_material("SpecularTextureBeyondTextures",
                       {{"extensions", {{"KHR_materials_specular", {{"specularTexture", {{"index", 7}}}}}}}},
                       "specularTexture.index"),
+        with_material("ClearcoatTooStrong",
+                      {{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1.5}}}}}},
+                      "expected clearcoat in [0, 1], found 1.5"),
+        with_material("ClearcoatRoughnessNegative",
+                      {{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatRoughnessFactor", -1}}}}}},
+                      "clearcoat roughness"),
+        with_material("ClearcoatIsNumber", {{"extensions", {{"KHR_materials_clearcoat", 1}}}},
+                      "KHR_materials_clearcoat: expected an object, found 1"),
+        with_material(
+            "ClearcoatNormalBeyondTextures",
+            {{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatNormalTexture", {{"index", 0}}}}}}}},
+            "clearcoatNormalTexture.index"),
+        with_material("SheenOfTwo",
+                      {{"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 1}}}}}}},
+                      "sheenColorFactor: expected 3 elements, found 2"),
+        with_material("SheenTooBright",
+                      {{"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {2, 1, 1}}}}}}},
+                      "sheen colour"),
+        with_material("SheenRoughnessIsText",
+                      {{"extensions", {{"KHR_materials_sheen", {{"sheenRoughnessFactor", "1"}}}}}},
+                      "sheenRoughnessFactor"),
+        with_material("GlossinessTooLarge",
+                      {{"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"glossinessFactor", 3}}}}}},
+                      "roughness"),
+        with_material("UnlitIsArray", {{"extensions", {{"KHR_materials_unlit", json::array()}}}},
+                      "KHR_materials_unlit: expected an object"),
+        {"WebpBeyondImages", "textures[0].extensions.EXT_texture_webp.source",
+         [](GltfBuilder& b) {
+             b.document["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+         }},
+        {"WebpOfNoise", "images[0]",
+         [](GltfBuilder& b) {
+             b.document["images"] = {{{"bufferView", b.add_view("RIFF\x10\x01\x01\x01WEBPVP8L........")}}};
+             b.document["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+             b.document["materials"] = {{{"emissiveTexture", {{"index", 0}}}}};
+             b.primitive()["material"] = 0;
+         }},
         {"ImageBeyondImages", "textures[0].source",
          [](GltfBuilder& b) {
              b.document["textures"] = {{{"source", 0}}};

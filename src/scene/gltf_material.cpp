@@ -79,6 +79,10 @@ class MaterialReader {
     void read_alpha(const tinygltf::Material& source, Material& material) const;
     void read_specular(const Value* specular, Material& material);
     void read_refraction(const tinygltf::ExtensionMap& extensions, Material& material);
+    void read_clearcoat(const Value* clearcoat, Material& material);
+    void read_sheen(const Value* sheen, Material& material);
+    void read_specular_glossiness(const Value* source, Material& material);
+    void make_unlit(Material& material);
 
     template <typename Info>
     std::optional<TextureRef> texture(const Info& info, const std::string& name) {
@@ -121,6 +125,11 @@ Material MaterialReader::read(std::size_t i) {
     read_alpha(source, material);
     read_specular(extension(source.extensions, "KHR_materials_specular"), material);
     read_refraction(source.extensions, material);
+    read_clearcoat(extension(source.extensions, "KHR_materials_clearcoat"), material);
+    read_sheen(extension(source.extensions, "KHR_materials_sheen"), material);
+    if (const Value* gloss = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness"))
+        read_specular_glossiness(gloss, material);
+    if (extension(source.extensions, "KHR_materials_unlit") != nullptr) make_unlit(material);
     return material;
 }
 
@@ -174,16 +183,68 @@ void MaterialReader::read_refraction(const tinygltf::ExtensionMap& extensions, M
     if (distance > 0) material.attenuation_distance = static_cast<float>(distance);
 }
 
+void MaterialReader::read_clearcoat(const Value* clearcoat, Material& material) {
+    material.clearcoat = static_cast<float>(number_or(clearcoat, "clearcoatFactor", 0));
+    material.clearcoat_texture = texture(clearcoat, "clearcoatTexture");
+    material.clearcoat_roughness = static_cast<float>(number_or(clearcoat, "clearcoatRoughnessFactor", 0));
+    material.clearcoat_roughness_texture = texture(clearcoat, "clearcoatRoughnessTexture");
+    if (material.clearcoat > 0 && (member(clearcoat, "clearcoatNormalTexture") || material.normal_texture))
+        scene_.warn(fmt::format("{} {}: the clear coat has the normals of what is below it", place_,
+                                quote(material.name)));
+}
+
+void MaterialReader::read_sheen(const Value* sheen, Material& material) {
+    for (int i = 0; i < 3; ++i) {
+        float* const channel[] = {&material.sheen_color.r, &material.sheen_color.g, &material.sheen_color.b};
+        *channel[i] = element_or(sheen, "sheenColorFactor", i, 0);
+    }
+    material.sheen_color_texture = texture(sheen, "sheenColorTexture");
+    material.sheen_roughness = static_cast<float>(number_or(sheen, "sheenRoughnessFactor", 0));
+    material.sheen_roughness_texture = texture(sheen, "sheenRoughnessTexture");
+}
+
+/// A diffuse base under a coat of any reflectance: the specular colour over an index that reflects
+/// everything.
+void MaterialReader::read_specular_glossiness(const Value* source, Material& material) {
+    material.base_color = color_or_white(source, "diffuseFactor");
+    material.base_alpha = element_or(source, "diffuseFactor", 3, 1);
+    material.base_color_texture = texture(source, "diffuseTexture");
+    material.metallic = 0;
+    material.metallic_roughness_texture.reset();
+    material.roughness = 1 - static_cast<float>(number_or(source, "glossinessFactor", 1));
+    material.ior = 1e4f;  // F0 = 0.9996
+    material.specular_color = color_or_white(source, "specularFactor");
+    material.specular_color_texture = texture(source, "specularGlossinessTexture");
+    if (material.specular_color_texture)
+        scene_.warn(fmt::format("{} {}: the glossiness in the texture's alpha is ignored, the factor counts",
+                                place_, quote(material.name)));
+}
+
+/// Shows the base colour whatever the light.
+void MaterialReader::make_unlit(Material& material) {
+    material.emission = material.base_color;
+    material.emission_texture = material.base_color_texture;
+    material.double_sided = true;
+    material.base_color = {};
+    material.metallic = material.specular = material.transmission = material.clearcoat = 0;
+    material.sheen_color = {};
+    scene_.warn(
+        fmt::format("{} {}: unlit surfaces are rendered as emitting their base colour, and so light others",
+                    place_, quote(material.name)));
+}
+
 std::optional<TextureRef> MaterialReader::texture(const TextureUse& use) {
     if (use.texture < 0) return std::nullopt;
     const auto& source = file_.model.textures[to_size(use.texture)];
-    if (source.source < 0) {
-        scene_.warn(
-            fmt::format("{}: textures[{}] has no PNG or JPEG image and was ignored", use.place, use.texture));
+    const Value* webp = extension(source.extensions, "EXT_texture_webp");
+    const int picture = static_cast<int>(number_or(webp, "source", source.source));
+    if (picture < 0) {
+        scene_.warn(fmt::format("{}: textures[{}] has no PNG, JPEG or WebP image and was ignored", use.place,
+                                use.texture));
         return std::nullopt;
     }
     TextureRef ref;
-    ref.image = image(source.source);
+    ref.image = image(picture);
     ref.uv_set = uv_set(use);
     ref.uv_transform = uv_transform(use.transform);
     apply_sampler(source.sampler, ref);

@@ -188,6 +188,68 @@ TEST(GltfMaterial, TexturesWithoutImageAreIgnoredWithAWarning) {
     EXPECT_EQ(scene.warnings.size(), 1u);
 }
 
+TEST(GltfMaterial, ReadsClearcoatAndSheen) {
+    const Material m = read_material(
+        {{"extensions",
+          {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.25}}},
+           {"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.5}}}}}});
+    EXPECT_EQ(m.clearcoat, 0.75f);
+    EXPECT_EQ(m.clearcoat_roughness, 0.25f);
+    EXPECT_EQ(m.sheen_color, (Spectrum{0.5f, 0.25f, 1}));
+    EXPECT_EQ(m.sheen_roughness, 0.5f);
+    EXPECT_TRUE(is_black(read_material(json::object()).sheen_color));
+}
+
+TEST(GltfMaterial, TexturesOfClearcoatAndSheenAreRead) {
+    GltfBuilder builder = test::triangle_document();
+    const json info = {{"index", add_texture(builder)}};
+    const SceneData scene =
+        read(builder,
+             {{"normalTexture", info},
+              {"extensions",
+               {{"KHR_materials_clearcoat",
+                 {{"clearcoatFactor", 1}, {"clearcoatTexture", info}, {"clearcoatRoughnessTexture", info}}},
+                {"KHR_materials_sheen", {{"sheenColorTexture", info}, {"sheenRoughnessTexture", info}}}}}});
+    const Material& m = scene.materials.at(0);
+    EXPECT_TRUE(m.clearcoat_texture && m.clearcoat_roughness_texture);
+    EXPECT_TRUE(m.sheen_color_texture && m.sheen_roughness_texture);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("clear coat has the normals"), std::string::npos);
+}
+
+TEST(GltfMaterial, UnlitEmitsItsBaseColour) {
+    GltfBuilder builder = test::triangle_document();
+    const SceneData scene = read(builder, {{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 1, 1}}}},
+                                           {"extensions", {{"KHR_materials_unlit", json::object()}}}});
+    const Material& m = scene.materials.at(0);
+    EXPECT_EQ(m.emission, (Spectrum{0.5f, 0.25f, 1}));
+    EXPECT_TRUE(is_black(m.base_color));
+    EXPECT_EQ(m.specular, 0);
+    EXPECT_EQ(scene.warnings.size(), 1u);
+}
+
+TEST(GltfMaterial, SpecularGlossinessIsACoatOfAnyReflectance) {
+    const Material m = read_material({{"extensions",
+                                       {{"KHR_materials_pbrSpecularGlossiness",
+                                         {{"diffuseFactor", {0.1, 0.2, 0.3, 0.5}},
+                                          {"specularFactor", {0.9, 0.6, 0.3}},
+                                          {"glossinessFactor", 0.75}}}}}});
+    EXPECT_EQ(m.base_color, (Spectrum{0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(m.base_alpha, 0.5f);
+    EXPECT_EQ(m.metallic, 0);
+    EXPECT_EQ(m.roughness, 0.25f);
+    EXPECT_EQ(m.specular_color, (Spectrum{0.9f, 0.6f, 0.3f}));
+    EXPECT_GT(m.ior, 1000);
+}
+
+TEST(GltfMaterial, WebpPicturesAreTakenInsteadOfTheirFallback) {
+    GltfBuilder builder = test::triangle_document();
+    builder.add("images", {{"uri", "fallback.png"}});
+    builder.add("images", {{"bufferView", builder.add_view(test::red_png())}});  // told by content
+    builder.add("textures", {{"source", 0}, {"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}});
+    EXPECT_EQ(read(builder, {{"emissiveTexture", {{"index", 0}}}}).images.at(0).width, 1);
+}
+
 TEST(GltfMaterial, IorZeroIsAlmostAMirror) {
     GltfBuilder builder = test::triangle_document();
     const SceneData scene = read(builder, {{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}});

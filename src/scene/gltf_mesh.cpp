@@ -10,6 +10,7 @@
 #include "base/message.hpp"
 #include "relumine/error.hpp"
 #include "scene/gltf_accessor.hpp"
+#include "scene/gltf_draco.hpp"
 #include "scene/quote.hpp"
 
 namespace relumine {
@@ -19,7 +20,8 @@ namespace {
 struct PrimitiveRef {
     const GltfFile& file;
     const tinygltf::Primitive& primitive;
-    std::string place;  // "meshes[2].primitives[0]"
+    std::string place;                       // "meshes[2].primitives[0]"
+    const DracoPrimitive* packed = nullptr;  // what of it was compressed
 };
 
 /// The accessor of an attribute, or −1.
@@ -37,17 +39,29 @@ std::vector<T> as_vectors(const std::vector<float>& floats) {
     return vectors;
 }
 
+const std::vector<float>& packed_values(const PrimitiveRef& ref, const std::string& name, int components) {
+    const auto& attribute = ref.packed->attributes.at(name);
+    if (attribute.components != components)
+        throw SceneError{expected_found(ref.file.where(ref.place + '.' + name),
+                                        fmt::format("{} components in the Draco data", components),
+                                        fmt::format("{}", attribute.components))};
+    return attribute.values;
+}
+
 /// The attribute's values, one per vertex; empty where the primitive does not have it.
 template <typename T>
 std::vector<T> read_attribute(const PrimitiveRef& ref, const std::string& name, std::size_t vertices) {
     const int accessor = attribute(ref, name);
     if (accessor < 0) return {};
+    const int components = static_cast<int>(sizeof(T) / sizeof(float));
+    if (ref.packed != nullptr && ref.packed->attributes.contains(name))
+        return as_vectors<T>(packed_values(ref, name, components));
     const std::size_t count = ref.file.model.accessors[to_size(accessor)].count;
     if (count != vertices)
         throw SceneError{expected_found(ref.file.where(ref.place + '.' + name),
                                         fmt::format("{} elements, as POSITION has", vertices),
                                         fmt::format("{}", count))};
-    return as_vectors<T>(read_floats(ref.file, accessor, static_cast<int>(sizeof(T) / sizeof(float))));
+    return as_vectors<T>(read_floats(ref.file, accessor, components));
 }
 
 /// COLOR_0 as RGBA; opaque where it is RGB.
@@ -86,6 +100,7 @@ std::vector<Triangle> fan_triangles(const std::vector<std::uint32_t>& corners) {
 }
 
 std::vector<Triangle> read_triangles(const PrimitiveRef& ref, std::size_t vertices) {
+    if (ref.packed != nullptr) return list_triangles(ref, ref.packed->corners);
     std::vector<std::uint32_t> corners;
     if (ref.primitive.indices >= 0) {
         corners = read_indices(ref.file, ref.primitive.indices);
@@ -103,19 +118,28 @@ std::vector<Triangle> read_triangles(const PrimitiveRef& ref, std::size_t vertic
     }
 }
 
-void spend(GltfBudget& budget, const PrimitiveRef& ref, int accessor) {
-    const std::size_t count = accessor < 0 ? 0 : ref.file.model.accessors[to_size(accessor)].count;
+void spend(GltfBudget& budget, const PrimitiveRef& ref, std::size_t count) {
     if (count > budget.elements)
         throw SceneError{
             expected_found(ref.file.where(ref.place), "at most 2^30 vertices and indices in all", "more")};
     budget.elements -= count;
 }
 
-Mesh read_primitive(const PrimitiveRef& ref, GltfBudget& budget) {
+Mesh read_primitive(PrimitiveRef ref, GltfBudget& budget) {
     const int position = attribute(ref, "POSITION");
-    spend(budget, ref, position);
-    spend(budget, ref, ref.primitive.indices);
-    const std::size_t vertices = ref.file.model.accessors[to_size(position)].count;
+    const auto count = [&](int accessor) {
+        return accessor < 0 ? 0 : ref.file.model.accessors[to_size(accessor)].count;
+    };
+    const std::size_t vertices = count(position);
+    spend(budget, ref, vertices);
+    spend(budget, ref, count(ref.primitive.indices));
+    const auto packed = unpack_gltf_primitive(ref.file, ref.primitive, ref.place);
+    if (packed && packed->points != vertices)
+        throw SceneError{expected_found(ref.file.where(ref.place),
+                                        fmt::format("{} points in the Draco data, as POSITION has", vertices),
+                                        fmt::format("{}", packed->points))};
+    if (packed) ref.packed = &*packed;
+    if (packed) spend(budget, ref, packed->corners.size());
     const int material = ref.primitive.material;
     Mesh mesh;
     mesh.positions = read_attribute<Vec3>(ref, "POSITION", vertices);

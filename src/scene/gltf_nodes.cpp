@@ -62,17 +62,6 @@ std::vector<int> scene_roots(const GltfFile& file, const std::vector<int>& paren
     return roots;
 }
 
-/// From translation t, unit quaternion q = (x, y, z, w) and scale s: T · R · S.
-Transform from_trs(const std::array<double, 3>& t, const std::array<double, 4>& q,
-                   const std::array<double, 3>& s) {
-    const auto [x, y, z, w] = q;
-    Transform m;
-    m.m[0] = {(1 - 2 * (y * y + z * z)) * s[0], 2 * (x * y - w * z) * s[1], 2 * (x * z + w * y) * s[2], t[0]};
-    m.m[1] = {2 * (x * y + w * z) * s[0], (1 - 2 * (x * x + z * z)) * s[1], 2 * (y * z - w * x) * s[2], t[1]};
-    m.m[2] = {2 * (x * z - w * y) * s[0], 2 * (y * z + w * x) * s[1], (1 - 2 * (x * x + y * y)) * s[2], t[2]};
-    return m;
-}
-
 template <std::size_t N>
 std::array<double, N> array_or(const std::vector<double>& values, std::array<double, N> fallback) {
     if (values.size() == N) std::copy(values.begin(), values.end(), fallback.begin());
@@ -109,6 +98,16 @@ Transform parent_from_node(const GltfFile& file, std::size_t node) {
 }
 
 }  // namespace
+
+Transform from_trs(const std::array<double, 3>& t, const std::array<double, 4>& q,
+                   const std::array<double, 3>& s) {
+    const auto [x, y, z, w] = q;
+    Transform m;
+    m.m[0] = {(1 - 2 * (y * y + z * z)) * s[0], 2 * (x * y - w * z) * s[1], 2 * (x * z + w * y) * s[2], t[0]};
+    m.m[1] = {2 * (x * y + w * z) * s[0], (1 - 2 * (x * x + z * z)) * s[1], 2 * (y * z - w * x) * s[2], t[1]};
+    m.m[2] = {2 * (x * z - w * y) * s[0], 2 * (y * z + w * x) * s[1], (1 - 2 * (x * x + y * y)) * s[2], t[2]};
+    return m;
+}
 
 std::vector<PlacedNode> place_nodes(const GltfFile& file) {
     const auto parents = find_parents(file);

@@ -2,6 +2,7 @@
 // The node hierarchy of a glTF file, flattened: which nodes are in the scene and where.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "base/transform.hpp"
@@ -18,5 +19,9 @@ struct PlacedNode {
 /// no default, and all nodes of a file without scenes. Throws SceneError for cycles, for two parents and for
 /// invalid transforms.
 [[nodiscard]] std::vector<PlacedNode> place_nodes(const GltfFile& file);
+
+/// From translation t, unit quaternion q = (x, y, z, w) and scale s: T · R · S.
+[[nodiscard]] Transform from_trs(const std::array<double, 3>& t, const std::array<double, 4>& q,
+                                 const std::array<double, 3>& s);
 
 }  // namespace relumine

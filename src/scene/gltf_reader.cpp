@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "scene/gltf_instancing.hpp"
 #include "scene/gltf_lights.hpp"
 #include "scene/gltf_material.hpp"
 #include "scene/gltf_mesh.hpp"
@@ -37,10 +38,17 @@ class MeshTable {
     std::map<int, MeshIds> ids_;
 };
 
-void add_instances(const GltfFile& file, const PlacedNode& placed, MeshTable& meshes, SceneData& scene) {
+void add_instances(const GltfFile& file, const PlacedNode& placed, MeshTable& meshes, std::size_t& places,
+                   SceneData& scene) {
     const int mesh = file.model.nodes[to_size(placed.node)].mesh;
     if (mesh < 0) return;
-    for (const MeshId id : meshes.ids(mesh)) scene.instances.push_back({id, placed.world_from_node, false});
+    const MeshIds& ids = meshes.ids(mesh);
+    const auto many = read_gltf_instancing(file, placed.node, ids.size(), places);
+    for (const MeshId id : ids) {
+        if (!many) scene.instances.push_back({id, placed.world_from_node, false});
+        for (const Transform& node_from_place : many.value_or(std::vector<Transform>{}))
+            scene.instances.push_back({id, placed.world_from_node * node_from_place, false});
+    }
 }
 
 /// glTF's material for primitives that name none: fully metallic, as the specification has it.
@@ -63,8 +71,9 @@ SceneData read_gltf(const std::string& path) {
     scene.name = path;
     for (std::string& warning : file.warnings) scene.warn(std::move(warning));
     MeshTable meshes{file, scene};
+    std::size_t places = max_gltf_places;
     for (const PlacedNode& placed : place_nodes(file)) {
-        add_instances(file, placed, meshes, scene);
+        add_instances(file, placed, meshes, places, scene);
         add_gltf_light(file, placed, scene);
         add_gltf_camera(file, placed, scene);
     }

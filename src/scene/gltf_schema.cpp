@@ -38,6 +38,9 @@ constexpr Field indices_of(std::string_view target, std::string_view name) {
 constexpr Field index_map_of(std::string_view target, std::string_view name) {
     return {.kind = Kind::index_map, .name = name, .target = target};
 }
+constexpr Field numbers_by_name(std::string_view name, double lower, double upper) {
+    return {.kind = Kind::integer_map, .name = name, .lower = lower, .upper = upper};
+}
 template <std::size_t N>
 constexpr Field object(std::string_view name, const Field (&fields)[N]) {
     return {.kind = Kind::object, .name = name, .fields = fields, .field_count = N};
@@ -53,7 +56,25 @@ constexpr Field required(Field field) {
 
 constexpr Field asset[] = {required(text("version")), text("minVersion")};
 
-constexpr Field buffer[] = {text("name"), text("uri"), required(integer("byteLength", 1, any_size))};
+constexpr Field fallback_buffer[] = {boolean("fallback")};
+constexpr Field buffer_extensions[] = {object("EXT_meshopt_compression", fallback_buffer)};
+constexpr Field buffer[] = {
+    text("name"),
+    text("uri"),
+    required(integer("byteLength", 1, any_size)),
+    object("extensions", buffer_extensions),
+};
+
+constexpr Field meshopt_view[] = {
+    required(index_of("/buffers", "buffer")),
+    integer("byteOffset", 0, any_size),
+    required(integer("byteLength", 1, any_size)),
+    required(integer("byteStride", 2, 256)),
+    required(integer("count", 1, any_int)),
+    required(text("mode")),
+    text("filter"),
+};
+constexpr Field buffer_view_extensions[] = {object("EXT_meshopt_compression", meshopt_view)};
 
 constexpr Field buffer_view[] = {
     text("name"),
@@ -61,6 +82,7 @@ constexpr Field buffer_view[] = {
     integer("byteOffset", 0, any_size),
     required(integer("byteLength", 1, any_size)),
     integer("byteStride", 4, 252),
+    object("extensions", buffer_view_extensions),
 };
 
 constexpr Field sparse_indices[] = {
@@ -95,7 +117,14 @@ constexpr Field sampler[] = {
     integer("wrapS", 10497, 33648),
     integer("wrapT", 10497, 33648),
 };
-constexpr Field texture[] = {text("name"), index_of("/samplers", "sampler"), index_of("/images", "source")};
+constexpr Field texture_source[] = {index_of("/images", "source")};
+constexpr Field texture_extensions[] = {object("EXT_texture_webp", texture_source)};
+constexpr Field texture[] = {
+    text("name"),
+    index_of("/samplers", "sampler"),
+    index_of("/images", "source"),
+    object("extensions", texture_extensions),
+};
 
 constexpr Field texture_transform[] = {numbers("offset", 2), number("rotation"), numbers("scale", 2),
                                        integer("texCoord", 0, any_int)};
@@ -130,7 +159,32 @@ constexpr Field volume[] = {
     number("attenuationDistance", 0),
     numbers("attenuationColor", 3),
 };
+constexpr Field clearcoat[] = {
+    number("clearcoatFactor"),
+    object("clearcoatTexture", texture_info),
+    number("clearcoatRoughnessFactor"),
+    object("clearcoatRoughnessTexture", texture_info),
+    object("clearcoatNormalTexture", normal_texture_info),
+};
+constexpr Field sheen[] = {
+    numbers("sheenColorFactor", 3),
+    object("sheenColorTexture", texture_info),
+    number("sheenRoughnessFactor"),
+    object("sheenRoughnessTexture", texture_info),
+};
+constexpr Field specular_glossiness[] = {
+    numbers("diffuseFactor", 4),
+    object("diffuseTexture", texture_info),
+    numbers("specularFactor", 3),
+    number("glossinessFactor"),
+    object("specularGlossinessTexture", texture_info),
+};
+constexpr Field nothing[] = {text("name")};
 constexpr Field material_extensions[] = {
+    object("KHR_materials_clearcoat", clearcoat),
+    object("KHR_materials_pbrSpecularGlossiness", specular_glossiness),
+    object("KHR_materials_sheen", sheen),
+    object("KHR_materials_unlit", nothing),
     object("KHR_materials_emissive_strength", emissive_strength),
     object("KHR_materials_ior", ior),
     object("KHR_materials_specular", specular),
@@ -149,17 +203,27 @@ constexpr Field material[] = {
     object("extensions", material_extensions),
 };
 
+constexpr Field draco[] = {
+    required(index_of("/bufferViews", "bufferView")),
+    required(numbers_by_name("attributes", 0, any_int)),
+};
+constexpr Field primitive_extensions[] = {object("KHR_draco_mesh_compression", draco)};
 constexpr Field primitive[] = {
     required(index_map_of("/accessors", "attributes")),
     index_of("/accessors", "indices"),
     index_of("/materials", "material"),
     integer("mode", 0, 6),
+    object("extensions", primitive_extensions),
 };
 constexpr Field mesh[] = {text("name"), required(objects("primitives", primitive))};
 
 constexpr std::string_view lights_pointer = "/extensions/KHR_lights_punctual/lights";
 constexpr Field node_light[] = {required(index_of(lights_pointer, "light"))};
-constexpr Field node_extensions[] = {object("KHR_lights_punctual", node_light)};
+constexpr Field gpu_instancing[] = {required(index_map_of("/accessors", "attributes"))};
+constexpr Field node_extensions[] = {
+    object("EXT_mesh_gpu_instancing", gpu_instancing),
+    object("KHR_lights_punctual", node_light),
+};
 constexpr Field node[] = {
     text("name"),
     indices_of("/nodes", "children"),

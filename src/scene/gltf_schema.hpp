@@ -16,12 +16,13 @@ enum class GltfKind {
     number,   // in [lower, upper]
     text,
     boolean,
-    object,     // with `fields`
-    numbers,    // array of numbers, `min_count` to `max_count`
-    indices,    // array of indices of `target`
-    texts,      // array of strings
-    objects,    // array of objects with `fields`
-    index_map,  // object whose values are indices of `target`
+    object,       // with `fields`
+    numbers,      // array of numbers, `min_count` to `max_count`
+    indices,      // array of indices of `target`
+    texts,        // array of strings
+    objects,      // array of objects with `fields`
+    index_map,    // object whose values are indices of `target`
+    integer_map,  // object whose values are integers in [lower, upper]
 };
 
 /// One property of a JSON object.
