@@ -140,7 +140,8 @@ def render_cycles(args):
     cycles.sample_clamp_indirect = cycles.sample_clamp_direct = cycles.blur_glossy = 0
     cycles.pixel_filter_type, cycles.filter_width = "BOX", 1
     world = bpy.data.worlds.new("dark")
-    world.color = (0, 0, 0)
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0
     scene.world = world
     if args.threads:
         scene.render.threads_mode, scene.render.threads = "FIXED", args.threads
@@ -195,8 +196,8 @@ def compare(ours, theirs, args):
     result = {"mean_ratio": float(ours.mean() / theirs.mean()), "blocks": int(lit.sum()),
               "median_difference": float(np.median(difference)),
               "difference_of_95_percent": float(np.percentile(difference, 95)),
-              "ratio_by_sphere": {name: round(float(a[mask].sum() / b[mask].sum()), 4)
-                                  for name, mask in sphere_masks(args)}}
+              "median_ratio_by_sphere": {name: round(float(np.median(a[mask].mean(axis=1) / b[mask].mean(axis=1))), 3)
+                                         for name, mask in sphere_masks(args)}}
     save_png(np.concatenate([ours, theirs], axis=1), args.out / "relumine-and-cycles.png")
     return result
 
@@ -206,7 +207,7 @@ def main():
     parser.add_argument("--relumine", default="build/release/relumine")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("cycles"), help="folder for what is made")
     parser.add_argument("--size", type=int, default=256, help="pixels")
-    parser.add_argument("--block", type=int, default=8, help="pixels")
+    parser.add_argument("--block", type=int, default=4, help="pixels")
     parser.add_argument("--spp", type=int, default=256)
     parser.add_argument("--max-depth", type=int, default=6)
     parser.add_argument("--method", default="path")
