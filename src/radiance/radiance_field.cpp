@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "base/executor.hpp"
+#include "radiance/caustic_map.hpp"
 #include "radiance/field_links.hpp"
 #include "radiance/field_trace.hpp"
 
@@ -144,6 +145,8 @@ class FieldBuilder {
                 center(t_, *cells_, element, counts);
                 const std::vector<StartPoint> points = start_points(t_, *cells_, id, settings_.seed, counts);
                 views[i] = trace_element(t_, element.normal, points, id, settings_, counts);
+                if (t_.caustics)
+                    t_.caustics->add_arriving(element, points, settings_.bounces, views[i].light);
             });
             for (const ElementView& view : views) link(view);
         }
