@@ -7,7 +7,7 @@
 namespace relumine {
 namespace {
 
-constexpr float same_side = 0.9f;  // cosine between normals of one surface
+constexpr float same_side = 0.9f;    // cosine between normals of one surface
 constexpr float plane_share = 0.3f;  // of the kernel's radius: how far off the plane photons may lie
 /// Of the box in which photons lie: the farthest that they are looked for.
 constexpr float farthest_share = 0.03f;
@@ -42,8 +42,8 @@ struct Cloud {
     }
 };
 
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3,
-                                                 std::uint32_t>;
+using Tree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, std::uint32_t>;
 
 }  // namespace
 

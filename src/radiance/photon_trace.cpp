@@ -145,8 +145,8 @@ class PhotonTracer {
         if (is_delta(vertex.bsdf)) return;
         const Spectrum arrived = flux * path.throughput * path.eta_scale;
         if (is_black(arrived) || !is_finite(arrived)) return;
-        photons_.push_back({vertex.point.position, vertex.point.geometric_normal, -path.ray.direction.v,
-                            arrived, specular});
+        photons_.push_back(
+            {vertex.point.position, vertex.point.geometric_normal, -path.ray.direction.v, arrived, specular});
     }
 
     /// Sends the photon on along the vertex' sharp lobes, if it has any and the photon survives.

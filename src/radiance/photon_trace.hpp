@@ -20,14 +20,14 @@ inline constexpr float caustic_alpha = 0.095f;
 /// Light that arrives at a surface after at least one specular reflection or refraction.
 struct Photon {
     Vec3 position;
-    Vec3 normal;              // geometric, unit, on the side that the light comes from
-    Vec3 from;                // unit, towards where it comes from
-    Spectrum flux;            // W
+    Vec3 normal;             // geometric, unit, on the side that the light comes from
+    Vec3 from;               // unit, towards where it comes from
+    Spectrum flux;           // W
     std::uint32_t specular;  // scattering vertices before this one
 };
 
 struct PhotonSettings {
-    std::uint32_t paths = 1u << 18;  // that begin at lights
+    std::uint32_t paths = 1u << 18;             // that begin at lights
     std::uint32_t most_specular = 0xffffffffu;  // scattering vertices of a path before its end
     std::uint64_t seed = 0;
     int threads = 1;
