@@ -161,8 +161,9 @@ class Inspector {
         const ShadingPoint& x = *p_.pixel.point;
         const Spectrum delta = delta_light(setup_.transport, x.vertex,
                                            p_.pixel.stream.bits(Dim::opacity, 2 * x.path.depth + 1), rays_);
+        const Spectrum caustics = caustic_light(setup_.transport, x.vertex, x.path.depth, max_depth_);
         const SplitRadiance sum{p_.pixel.emission, x.path.throughput * (gathered.direct + delta),
-                                x.path.throughput * (gathered.total - gathered.direct)};
+                                x.path.throughput * (gathered.total - gathered.direct + caustics)};
         return sum.total();
     }
 

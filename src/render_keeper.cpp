@@ -34,7 +34,7 @@ requires std::is_arithmetic_v<Number> std::string text_of(Number value) { return
 
 Identity settings_identity(const RenderSettings& settings) {
     const auto& [method, samples_per_pixel, pixel_sampling, pixel_filter, sampler, gather_rays,
-                 gather_packets, light_samples, max_depth, radiance, record_size, record_layers,
+                 gather_packets, light_samples, max_depth, radiance, photons, record_size, record_layers,
                  record_spacing, records_per_point, gap_cell, bsdf_share, error, unbiased, filter_residual,
                  residual_rays, cache_scope, masking, camera, width, height, crop, threads, seed, aovs] =
         settings;
@@ -49,6 +49,7 @@ Identity settings_identity(const RenderSettings& settings) {
             {"light samples", text_of(light_samples)},
             {"max depth", text_of(max_depth)},
             {"radiance", text_of(radiance)},
+            {"photons", text_of(photons)},
             {"record size", text_of(record_size)},
             {"record layers", text_of(record_layers)},
             {"record spacing", text_of(record_spacing)},

@@ -105,6 +105,8 @@ RenderSetup::RenderSetup(const SceneData& scene, const RenderSettings& settings,
 
 void RenderSetup::add_field(const RenderSettings& settings, const std::function<bool()>& stop,
                             RayCounts& rays) {
+    caustics = make_caustics(settings, transport, stop, rays);
+    transport.caustics = caustics.get();
     field = make_field(settings, transport, view, stop, rays);
     transport.field = field.get();
 }

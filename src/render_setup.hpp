@@ -27,7 +27,8 @@ struct RenderSetup {
     RenderSetup(const RenderSetup&) = delete;
     RenderSetup& operator=(const RenderSetup&) = delete;
 
-    /// Builds the radiance field that `wants_field(settings)` asks for. `stop` may be empty.
+    /// Builds the radiance field that `wants_field(settings)` asks for, and the caustic map beside it. `stop`
+    /// may be empty.
     void add_field(const RenderSettings& settings, const std::function<bool()>& stop, RayCounts& rays);
 
     Tracer tracer;
@@ -36,6 +37,7 @@ struct RenderSetup {
     UniformBsdfs uniform_bsdfs;
     Transport transport;
     View view;
+    std::unique_ptr<CausticMap> caustics;  // or null
     std::unique_ptr<RadianceField> field;  // or null
 };
 

@@ -31,6 +31,8 @@ struct RenderSettings {
     int max_depth = -1;      // scattering vertices of a path; −1: unlimited with Russian roulette
     std::string radiance = "auto";  // methods that gather: "emission", "direct", "radiosity", "path"; auto:
                                     // radiosity where light is reflected more than once
+    int photons = -1;  // methods that use a radiance field: paths from lights for caustics, 0 … 2²⁴; −1: as
+                       // many as the method wants, which is none yet. Never where `unbiased`
     int record_size = 64;       // `reproject`, `reproject-mc`: n, a record has n × n rays; 16, 32, 64 or 128
     int record_layers = 16;     // the same: K, depth layers of a record, 1 … 64
     float record_spacing = 1;   // the same: factor on how far records are used, 0.01 … 100

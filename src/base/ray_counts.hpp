@@ -18,10 +18,12 @@ enum class RayPurpose : std::uint8_t {
     gap,
     product,
     residual,
-    field
+    field,
+    photon
 };
-inline constexpr std::array<const char*, 10> ray_purpose_names{
-    "camera", "prefix", "gather", "bounce", "shadow", "record", "gap", "product", "residual", "field"};
+inline constexpr std::array<const char*, 11> ray_purpose_names{"camera",   "prefix", "gather", "bounce",
+                                                               "shadow",   "record", "gap",    "product",
+                                                               "residual", "field",  "photon"};
 
 struct RayCounts {
     std::array<std::uint64_t, ray_purpose_names.size()> by_purpose{};

@@ -48,6 +48,7 @@ Json settings_json(const RenderSettings& s, const SceneOptions& scene) {
             {"light_samples", s.light_samples},
             {"max_depth", s.max_depth},
             {"radiance", s.radiance},
+            {"photons", s.photons},
             {"masking", s.masking},
             {"camera", s.camera},
             {"width", s.width},

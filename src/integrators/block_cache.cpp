@@ -15,6 +15,7 @@
 #include "integrators/lit_sample.hpp"
 #include "integrators/path_tracer.hpp"
 #include "integrators/residual_filter.hpp"
+#include "radiance/caustic_map.hpp"
 #include "radiance/direct_light.hpp"
 
 namespace relumine {
@@ -294,6 +295,8 @@ class BlockCache final : public Integrator {
             reflected.direct +=
                 delta_light(transport_, pixel.point->vertex,
                             pixel.stream.bits(Dim::opacity, 2 * pixel.point->path.depth + 1), rays);
+            reflected.indirect +=
+                caustic_light(transport_, pixel.point->vertex, pixel.point->path.depth, max_depth_);
             const Spectrum throughput = pixel.point->path.throughput;
             if (!is_finite(sample.sampled.residual.direct + sample.sampled.residual.indirect
                            + sample.sampled.bright)) {

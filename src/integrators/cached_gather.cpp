@@ -9,6 +9,7 @@
 #include "integrators/light_source.hpp"
 #include "integrators/path_tracer.hpp"
 #include "integrators/product_rays.hpp"
+#include "radiance/caustic_map.hpp"
 #include "radiance/direct_light.hpp"
 
 namespace relumine {
@@ -127,7 +128,8 @@ class CachedGather final : public Integrator {
         const Spectrum delta = delta_light(transport_, x.vertex,
                                            pixel.stream.bits(Dim::opacity, 2 * x.path.depth + 1), tile.rays);
         sum.direct = x.path.throughput * (gathered.direct + delta);
-        sum.indirect = x.path.throughput * gathered.indirect;
+        const Spectrum caustics = caustic_light(transport_, x.vertex, x.path.depth, max_depth_);
+        sum.indirect = x.path.throughput * (gathered.indirect + caustics);
         return sum;
     }
 

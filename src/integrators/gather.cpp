@@ -4,6 +4,7 @@
 
 #include "integrators/gather_estimate.hpp"
 #include "integrators/path_tracer.hpp"
+#include "radiance/caustic_map.hpp"
 #include "radiance/direct_light.hpp"
 
 namespace relumine {
@@ -38,7 +39,8 @@ class Gather final : public Integrator {
         const Spectrum delta =
             delta_light(transport_, x->vertex, s.stream.bits(Dim::opacity, 2 * x->path.depth + 1), rays);
         sum.direct = x->path.throughput * (gathered.direct + delta);
-        sum.indirect = x->path.throughput * gathered.indirect;
+        const Spectrum caustics = caustic_light(transport_, x->vertex, x->path.depth, max_depth_);
+        sum.indirect = x->path.throughput * (gathered.indirect + caustics);
         return sum;
     }
 

@@ -40,17 +40,31 @@ void add_seeds(const Transport& t, const CameraSample& sample, std::uint32_t max
         seeds.push_back({p.position, -p.geometric_normal, p.offset});
 }
 
+bool is_exact(const RenderSettings& settings) { return settings.method == "cache" && settings.unbiased; }
+
 }  // namespace
 
 IncidentRadiance incident_source(const RenderSettings& settings, const Transport& transport) {
-    const bool exact = settings.method == "cache" && settings.unbiased;
     return {transport, depth_limit(settings), source_depth(settings.radiance),
-            exact ? nullptr : transport.field};
+            is_exact(settings) ? nullptr : transport.field};
 }
 
 bool wants_field(const RenderSettings& settings) {
     if (settings.method == "path" || (settings.max_depth >= 0 && settings.max_depth < 2)) return false;
     return settings.radiance == "radiosity" || settings.radiance == "auto";
+}
+
+std::unique_ptr<CausticMap> make_caustics(const RenderSettings& settings, const Transport& transport,
+                                          const std::function<bool()>& stop, RayCounts& rays) {
+    if (settings.photons <= 0 || is_exact(settings) || !has_specular_surfaces(transport.scene)) return {};
+    const FlushDenormals flush;
+    PhotonSettings photons;
+    photons.paths = static_cast<std::uint32_t>(settings.photons);
+    photons.seed = settings.seed;
+    photons.threads = resolve_threads(settings.threads);
+    photons.stop = stop;
+    if (settings.max_depth >= 0) photons.most_specular = static_cast<std::uint32_t>(settings.max_depth) - 1;
+    return std::make_unique<CausticMap>(trace_photons(transport, photons, rays));
 }
 
 std::unique_ptr<RadianceField> make_field(const RenderSettings& settings, const Transport& transport,

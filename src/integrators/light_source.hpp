@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "integrators/view.hpp"
+#include "radiance/caustic_map.hpp"
 #include "radiance/incident.hpp"
 #include "radiance/radiance_field.hpp"
 #include "relumine/render.hpp"
@@ -18,6 +19,12 @@ namespace relumine {
 /// Whether a method looks light up in a radiance field: `radiosity`, or `auto` where light is reflected more
 /// than once.
 [[nodiscard]] bool wants_field(const RenderSettings& settings);
+
+/// The caustics that go with a field; null where the settings want none, the method is to be unbiased or
+/// nothing in the scene is specular. `stop` may be empty.
+[[nodiscard]] std::unique_ptr<CausticMap> make_caustics(const RenderSettings& settings,
+                                                        const Transport& transport,
+                                                        const std::function<bool()>& stop, RayCounts& rays);
 
 /// The field of a scene as the camera's full frame sees it. `stop` may be empty.
 [[nodiscard]] std::unique_ptr<RadianceField> make_field(const RenderSettings& settings,

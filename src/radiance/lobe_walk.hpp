@@ -27,14 +27,16 @@ struct DiffuseVertex {
 /// reflects diffusely, and goes on along its lobes; where `use` says false, because it knows nothing of the
 /// light there, the diffuse part is followed as well. Light that is met after the first surface, and the
 /// lights' own light in lobes, is added to `found`. Unbiased, if `use` is and roughnesses are kept, for the
-/// light that the surface at the path's hit reflects.
+/// light that the surface at the path's hit reflects; but for what a caustic map holds for the surface that
+/// the ray has left.
 template <typename Use>
 void walk_lobes(const Transport& t, PathState path, const LobeWalk& settings, const SampleStream& stream,
                 Spectrum& found, RayCounts& rays, const Use& use);
 
-/// A step of such a walk: light sampling at `vertex`, then a direction drawn from its BSDF, and its hit.
-void step_along(const Transport& t, PathState& path, const Vertex& vertex, const SampleStream& stream,
-                Spectrum& found, RayCounts& rays);
+/// A step of such a walk: light sampling at `vertex`, unless photons have found that light, then a direction
+/// drawn from its BSDF, and its hit.
+void step_along(const Transport& t, PathState& path, const Vertex& vertex, bool photons,
+                const SampleStream& stream, Spectrum& found, RayCounts& rays);
 
 /// What becomes of a path at a surface: what is diffuse is used, the rest followed.
 struct WalkChoice {
@@ -42,6 +44,7 @@ struct WalkChoice {
     std::optional<Bsdf> follow;  // empty: nothing
     float probability = 1;       // of following
     bool delta = false;          // `follow` is one: it does not count as rough
+    bool caustic = false;        // photons follow it as well
 };
 [[nodiscard]] WalkChoice choose(const Vertex& vertex, Spectrum throughput, int rough_so_far,
                                 const LobeWalk& settings);
@@ -51,10 +54,12 @@ void walk_lobes(const Transport& t, PathState path, const LobeWalk& settings, co
                 Spectrum& found, RayCounts& rays, const Use& use) {
     constexpr int longest = 64;  // reflections and refractions, for light that is caught between mirrors
     int rough = 0;
-    path.count_emission = false;  // at the first hit that is the caller's
+    bool photons = t.caustics != nullptr;  // whether they have come the same way so far
+    path.count_emission = false;           // at the first hit that is the caller's
     for (int i = 0; i < longest && path.hit; ++i) {
         Vertex vertex = make_vertex(t, path, stream);
-        if (path.count_emission) found += path.throughput * arriving_emission(t, path, &vertex.point);
+        if (path.count_emission && !photons)
+            found += path.throughput * arriving_emission(t, path, &vertex.point);
         if (path.depth >= settings.max_depth) return;
         const WalkChoice choice = choose(vertex, path.throughput, rough, settings);
         const bool known =
@@ -64,11 +69,13 @@ void walk_lobes(const Transport& t, PathState path, const LobeWalk& settings, co
             path.throughput *= 1 / choice.probability;
             vertex.bsdf = *choice.follow;
         }
+        photons = photons && known && choice.caustic;
         rough += choice.delta ? 0 : 1;
-        step_along(t, path, vertex, stream, found, rays);
+        step_along(t, path, vertex, photons, stream, found, rays);
         if (!path.alive) return;
     }
-    if (!path.hit && path.count_emission) found += path.throughput * arriving_emission(t, path, nullptr);
+    if (!path.hit && path.count_emission && !photons)
+        found += path.throughput * arriving_emission(t, path, nullptr);
 }
 
 }  // namespace relumine

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "base/executor.hpp"
+#include "radiance/caustic_map.hpp"
 #include "radiance/field_links.hpp"
 #include "radiance/field_trace.hpp"
 
@@ -169,6 +170,8 @@ class FieldBuilder {
                 center(t_, *cells_, element, counts);
                 all[i].points = points_of(id, counts);
                 all[i].view = trace_element(t_, element.normal, all[i].points, id, settings_, counts);
+                if (t_.caustics)
+                    t_.caustics->add_arriving(element, all[i].points, settings_.bounces, all[i].view.light);
             });
             const double mean_light = traced_ > 0 ? light_ / static_cast<double>(traced_) : 0;
             for (const Traced& traced : all)

@@ -10,6 +10,7 @@
 namespace relumine {
 
 class RadianceField;
+class CausticMap;
 
 /// The scene as light sees it. All references outlive the value.
 struct Transport {
@@ -19,6 +20,7 @@ struct Transport {
     const UniformBsdfs& uniform_bsdfs;
     Masking masking = Masking::correlated;
     const RadianceField* field = nullptr;  // light on surfaces, where a method has asked for it
+    const CausticMap* caustics = nullptr;  // likewise: holds what specular vertices alone part from lights
 };
 
 /// A surface point with its BSDF, seen along `w_out`.
