@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every method on several threads at once, kept and watched meanwhile: what ThreadSanitizer looks at in little
-// time. The pictures are those of one thread.
+// Every method on several threads at once, kept and watched meanwhile: what ThreadSanitizer looks at in
+// little time. The pictures are those of one thread.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -13,7 +13,8 @@ TEST(PointReservoirs, AFewPointsAllStayInOrder) {
     PointReservoirs met;
     for (int i = 0; i < 5; ++i) met.offer(7, numbered(i));
     ASSERT_EQ(met.of(7).size(), 5u);
-    for (int i = 0; i < 5; ++i) EXPECT_EQ(met.of(7)[static_cast<std::size_t>(i)].position.x, static_cast<float>(i));
+    for (int i = 0; i < 5; ++i)
+        EXPECT_EQ(met.of(7)[static_cast<std::size_t>(i)].position.x, static_cast<float>(i));
     EXPECT_TRUE(met.of(3).empty());
     EXPECT_TRUE(met.of(8).empty());
 }
@@ -28,7 +29,8 @@ TEST(PointReservoirs, EarlyPointsAreKeptNoMoreOftenThanLateOnes) {
         ASSERT_EQ(met.of(id).size(), PointReservoirs::most);
         for (const StartPoint& p : met.of(id)) ++kept[static_cast<std::size_t>(p.position.x)];
     }
-    // Each count is binomial: mean 500, standard deviation 19; 64 of them within 5 of it, but for one in 30,000.
+    // Each count is binomial: mean 500, standard deviation 19; 64 of them within 5 of it, but for one in
+    // 30,000.
     for (const int count : kept) EXPECT_NEAR(count, 500, 97);
 }
 

@@ -23,12 +23,6 @@ bool is_fallback(const json& buffer) {
     return buffer.contains(flag) && buffer.at(flag).get<bool>();
 }
 
-/// Whether the buffer is there for readers without EXT_meshopt_compression alone.
-bool is_fallback(const json& buffer) {
-    const json::json_pointer flag{"/extensions/EXT_meshopt_compression/fallback"};
-    return buffer.contains(flag) && buffer.at(flag).get<bool>();
-}
-
 /// The bytes of buffer `i`, cut to its byteLength.
 std::span<const std::uint8_t> load_buffer(GltfFile& file, const json& buffer, std::size_t i) {
     const std::string place = fmt::format("buffers[{}]", i);

@@ -29,7 +29,7 @@ struct GltfFile {
         buffers;  // of exactly `byteLength` bytes, into `container` or `loaded`
     GltfContainer container;
     std::vector<std::vector<std::uint8_t>> loaded;
-    std::unique_ptr<SceneFiles> files;  // for whatever has a URI
+    std::unique_ptr<SceneFiles> files;                  // for whatever has a URI
     std::map<int, std::vector<std::uint8_t>> unpacked;  // buffer views that were compressed
     std::vector<std::string> warnings;
 

@@ -18,8 +18,9 @@ using test::TempFolder;
 
 SceneData read(const std::string& text, const std::map<std::string, std::string>& definitions = {}) {
     const TempFolder folder;
-    return read_mitsuba(folder.write("scene.xml", "<scene version='3.0.0'>" + text + "</scene>"),
-                        definitions);
+    SceneOptions options;
+    options.definitions = definitions;
+    return read_mitsuba(folder.write("scene.xml", "<scene version='3.0.0'>" + text + "</scene>"), options);
 }
 
 const Material& material_of(const SceneData& scene) {

@@ -94,14 +94,10 @@ void run_checkpoint(Bytes bytes) {
 }  // namespace
 
 const std::vector<Target>& targets() {
-    static const std::vector<Target> all{{"gltf", run_gltf},
-                                         {"pbrt", run_pbrt},
-                                         {"mitsuba", run_mitsuba},
-                                         {"ply", run_model<read_ply>},
-                                         {"obj", run_model<read_obj>},
-                                         {"picture", run_picture},
-                                         {"texture", run_texture},
-                                         {"checkpoint", run_checkpoint}};
+    static const std::vector<Target> all{{"gltf", run_gltf},           {"pbrt", run_pbrt},
+                                         {"mitsuba", run_mitsuba},     {"ply", run_model<read_ply>},
+                                         {"obj", run_model<read_obj>}, {"picture", run_picture},
+                                         {"texture", run_texture},     {"checkpoint", run_checkpoint}};
     return all;
 }
 

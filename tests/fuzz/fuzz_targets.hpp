@@ -17,8 +17,8 @@ struct Target {
     void (*run)(Bytes);
 };
 
-/// gltf, pbrt, mitsuba, ply, obj: scenes; picture: EXR, HDR, PFM, PNG, JPEG as pictures; texture: PNG, JPEG as
-/// textures; checkpoint.
+/// gltf, pbrt, mitsuba, ply, obj: scenes; picture: EXR, HDR, PFM, PNG, JPEG as pictures; texture: PNG, JPEG
+/// as textures; checkpoint.
 [[nodiscard]] const std::vector<Target>& targets();
 
 }  // namespace relumine::fuzz
