@@ -108,13 +108,13 @@ RenderSettings small(const std::string& method, int photons) {
 
 constexpr int enough = 1 << 17;
 
-class Methods : public ::testing::TestWithParam<std::tuple<const char*, float>> {};
-INSTANTIATE_TEST_SUITE_P(Caustics, Methods,
+class MethodsWithPhotons : public ::testing::TestWithParam<std::tuple<const char*, float>> {};
+INSTANTIATE_TEST_SUITE_P(Caustics, MethodsWithPhotons,
                          ::testing::Combine(::testing::Values("gather", "cache"),
                                             ::testing::Values(0.0f, 0.25f)));
 
 /// A tenth of the light and more has met one mirror, so counting it twice or never would show.
-TEST_P(Methods, TheMeanIsThatOfPath) {
+TEST_P(MethodsWithPhotons, TheMeanIsThatOfPath) {
     const auto [method, roughness] = GetParam();
     const Scene scene = mirrors(roughness);
     RenderSettings path = small("path", 0);
