@@ -2,6 +2,7 @@
 """The measurements: errors and times, thread scaling, sweeps, convergence. Every one returns plain data for JSON."""
 import dataclasses
 import pathlib
+import random
 import statistics
 import sys
 
@@ -57,8 +58,19 @@ class Cell:
     def name(self) -> str:
         return f"{self.scene.name}, {self.environment}"
 
-    def view(self, size: int) -> View:
-        return View(self.scene.file, self.file, self.scene.env_rotate, size, size)
+    def view(self, size: int, bands: tuple[tuple[int, int], ...] = ()) -> View:
+        return View(self.scene.file, self.file, self.scene.env_rotate, size, size, bands=bands)
+
+
+BAND_ROWS = 4
+
+
+def bands_of(size: int, count: int) -> tuple[tuple[int, int], ...]:
+    """`count` bands of BAND_ROWS rows, one at a place drawn within each of as many equal parts of the picture."""
+    draw = random.Random(512)
+    parts = [(i * size // count, (i + 1) * size // count) for i in range(count)]
+    firsts = [draw.randrange(first, last - BAND_ROWS + 1) for first, last in parts]
+    return tuple((first, first + BAND_ROWS) for first in firsts)
 
 
 def log(text: str) -> None:
@@ -87,7 +99,7 @@ class Lab:
         return self.refused[name] or None
 
     def surfaces(self, view: View) -> np.ndarray:
-        return self.relumine.surfaces(view, self.white)
+        return self.relumine.surfaces(view.whole(), self.white)[view.rows()]
 
     def converged(self, view: View, keep: np.ndarray, smallest: metrics.Errors) -> tuple[Reference, dict]:
         """A reference whose own error is below `smallest` / reference_ratio, if the passes allowed suffice."""
@@ -155,8 +167,13 @@ def ratio(a: float | None, b: float | None) -> float | None:
 # --- errors and times ---
 
 
-def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], size: int, repeats: int) -> dict:
-    """Every method once a repeat, in another order and with another seed each time."""
+def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], view: View, repeats: int) -> dict:
+    """Every method once a repeat, in another order and with another seed each time.
+
+    Where the view has bands, errors are theirs; records are made for the whole picture and `gather`, whose pixels
+    share nothing, is rendered and timed in the bands alone.
+    """
+    size = view.height
     skipped = {name: lab.missing(name, options, cell) for name, options in methods.items()}
     present = [name for name in methods if not skipped[name]]
     if not present:
@@ -165,11 +182,18 @@ def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], size: int
     for repeat in range(repeats):
         turn = repeat % len(present)
         for name in present[turn:] + present[:turn]:
-            run = lab.relumine.render(cell.view(size), methods[name], seed=repeat + 1, threads=lab.threads)
+            shares_nothing = methods[name]["method"] == "gather"
+            run = lab.relumine.render(view if shares_nothing else view.whole(), methods[name], seed=repeat + 1,
+                                      threads=lab.threads)
+            if view.bands and not shares_nothing:
+                if repeat == 0:
+                    pictures.write_pfm(lab.kept_pictures / f"{cell.scene.name}-{cell.environment}-{name}-whole.pfm",
+                                       run.picture)
+                run = dataclasses.replace(run, picture=run.picture[view.rows()])
             runs[name].append(run)
             log(f"    {name}, repeat {repeat + 1}: {run.cpu:.2f} CPU seconds")
-    errors, reference = lab.measured(cell.view(size), runs)
-    keep_pictures(lab, cell, size, runs)
+    errors, reference = lab.measured(view, runs)
+    keep_pictures(lab, cell, view, runs)
     found = {name: {"errors": errors[name], **costs(runs[name])} for name in present}
     add_speed_ups(found)
     found.update({name: {"skipped": reason} for name, reason in skipped.items() if reason})
@@ -178,10 +202,9 @@ def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], size: int
             "methods": {name: found[name] for name in methods}}
 
 
-def keep_pictures(lab: Lab, cell: Cell, size: int, runs: dict[str, list[Run]]) -> None:
+def keep_pictures(lab: Lab, cell: Cell, view: View, runs: dict[str, list[Run]]) -> None:
     """For the picture sheet: the first repeat of each method, the reference, and where surfaces are."""
     base = f"{cell.scene.name}-{cell.environment}"
-    view = cell.view(size)
     everything = {name: several[0].picture for name, several in runs.items()}
     everything["reference"] = lab.references.get(view).picture
     everything["surfaces"] = np.repeat(lab.surfaces(view)[:, :, None].astype(float), 3, axis=2)
