@@ -10,7 +10,7 @@ import numpy as np
 
 import metrics
 import pictures
-from command import Options, Refused, Relumine, Run, View, looked_up
+from command import Options, Refused, Relumine, Run, View, looked_up, scaled_sum
 from make_scenes import Scene
 from reference import Reference, References
 
@@ -27,8 +27,8 @@ def methods_of(n: int) -> dict[str, Options]:
         "gather-single": {**gather, "gather-packets": "off"},
         "gather": gather,
         "reproject": {"method": "reproject", **cache},
-        "reproject-mc": {"method": "reproject-mc", **cache, "bsdf-share": 0.1},
-        "reproject-mc-0": {"method": "reproject-mc", **cache, "bsdf-share": 0},
+        "reproject-mc": {"method": "reproject-mc", **cache, "gather-rays": n * n, "bsdf-share": 0.1},
+        "reproject-mc-0": {"method": "reproject-mc", **cache, "gather-rays": n * n, "bsdf-share": 0},
     }
 
 
@@ -170,8 +170,7 @@ def ratio(a: float | None, b: float | None) -> float | None:
 def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], view: View, repeats: int) -> dict:
     """Every method once a repeat, in another order and with another seed each time.
 
-    Where the view has bands, errors are theirs; records are made for the whole picture and `gather`, whose pixels
-    share nothing, is rendered and timed in the bands alone.
+    Where the view has bands, errors are theirs, and only `reproject` is rendered as a whole (see `render_once`).
     """
     size = view.height
     skipped = {name: lab.missing(name, options, cell) for name, options in methods.items()}
@@ -182,16 +181,13 @@ def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], view: Vie
     for repeat in range(repeats):
         turn = repeat % len(present)
         for name in present[turn:] + present[:turn]:
-            shares_nothing = methods[name]["method"] == "gather"
-            run = lab.relumine.render(view if shares_nothing else view.whole(), methods[name], seed=repeat + 1,
-                                      threads=lab.threads)
-            if view.bands and not shares_nothing:
-                if repeat == 0:
-                    pictures.write_pfm(lab.kept_pictures / f"{cell.scene.name}-{cell.environment}-{name}-whole.pfm",
-                                       run.picture)
-                run = dataclasses.replace(run, picture=run.picture[view.rows()])
+            run = render_once(lab, view, methods[name], repeat + 1)
             runs[name].append(run)
             log(f"    {name}, repeat {repeat + 1}: {run.cpu:.2f} CPU seconds")
+    if view.bands:
+        take_whole_times(runs)
+        keep_whole_pictures(lab, cell, runs)
+        runs = {name: [in_bands(run, view) for run in several] for name, several in runs.items()}
     errors, reference = lab.measured(view, runs)
     keep_pictures(lab, cell, view, runs)
     found = {name: {"errors": errors[name], **costs(runs[name])} for name in present}
@@ -200,6 +196,44 @@ def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], view: Vie
     return {"scene": cell.scene.name, "environment": cell.environment, "size": size, "repeats": repeats,
             "model": cell.scene.model, "env_rotate": cell.scene.env_rotate, "reference": reference,
             "methods": {name: found[name] for name in methods}}
+
+
+def render_once(lab: Lab, view: View, options: Options, seed: int) -> Run:
+    """The whole picture of `reproject`, whose records serve all of it; of other methods what the view shows."""
+    seen = view.whole() if options["method"] == "reproject" else view
+    return lab.relumine.render(seen, options, seed=seed, threads=lab.threads)
+
+
+def take_whole_times(runs: dict[str, list[Run]]) -> None:
+    """Bands of `reproject-mc` make records for nearly all of the picture each time: its time is that of `reproject`,
+    which makes the same, and of its own rays."""
+    for name in (name for name in runs if name.startswith("reproject-mc")):
+        if "reproject" not in runs:
+            raise SystemExit(f"--bands: {name} takes times of reproject, which --methods does not name")
+        runs[name] = [dataclasses.replace(with_rays(whole, run), picture=run.picture)
+                      for run, whole in zip(runs[name], runs["reproject"])]
+
+
+def with_rays(whole: Run, mc: Run) -> Run:
+    """`reproject` with the product rays of `reproject-mc` on top."""
+    seconds = mc.stats["cache"]["cpu_seconds"]["product"]
+    times = scaled_sum([{key: whole.stats[key] for key in ("cpu_seconds", "total_seconds", "stage_seconds")}],
+                       1 + seconds / whole.cpu)
+    cache = {**whole.stats["cache"],
+             "cpu_seconds": {**whole.stats["cache"]["cpu_seconds"], "product": seconds}}
+    stats = {**whole.stats, **times, "cache": cache, "command": mc.stats["command"]}
+    return dataclasses.replace(whole, stats=stats, process_cpu=whole.process_cpu + seconds)
+
+
+def in_bands(run: Run, view: View) -> Run:
+    whole = run.picture.shape[0] == view.height
+    return dataclasses.replace(run, picture=run.picture[view.rows()]) if whole else run
+
+
+def keep_whole_pictures(lab: Lab, cell: Cell, runs: dict[str, list[Run]]) -> None:
+    for name in (name for name in runs if name == "reproject"):
+        file = lab.kept_pictures / f"{cell.scene.name}-{cell.environment}-{name}-whole.pfm"
+        pictures.write_pfm(file, runs[name][0].picture)
 
 
 def keep_pictures(lab: Lab, cell: Cell, view: View, runs: dict[str, list[Run]]) -> None:

@@ -90,7 +90,7 @@ def about_run(run: dict) -> list[str]:
              "environment on a miss, black on a hit.", ""]
     if s.get("bands"):
         lines += [f"Errors of {s['bands']} bands of 4 rows, drawn once for all methods, and of the whole picture's records; the "
-                  "times of `gather` are those of the bands, scaled to the whole picture.", ""]
+                  "times of `gather` and of `reproject-mc`'s rays are those of the bands, scaled to the whole picture.", ""]
     if s["quick"]:
         lines += ["**A quick run: it shows that everything runs, its numbers mean nothing.**", ""]
     if run.get("resumed"):
