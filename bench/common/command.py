@@ -123,13 +123,16 @@ def stacked(runs: list[Run], scale: float) -> Run:
 
 
 def scaled_sum(every: list[dict], scale: float) -> dict:
-    """Of numbers under the same keys; other values are the first's."""
-    result = dict(every[0])
-    for key, value in every[0].items():
-        if isinstance(value, dict):
-            result[key] = scaled_sum([one[key] for one in every], scale)
-        elif isinstance(value, (int, float)) and not isinstance(value, bool):
-            result[key] = scale * sum(one[key] for one in every)
+    """Of numbers under the same keys, which not all need to have; other values are the first's."""
+    result: dict = {}
+    for key in dict.fromkeys(key for one in every for key in one):
+        values = [one[key] for one in every if key in one]
+        if isinstance(values[0], dict):
+            result[key] = scaled_sum(values, scale)
+        elif isinstance(values[0], (int, float)) and not isinstance(values[0], bool):
+            result[key] = scale * sum(values)
+        else:
+            result[key] = values[0]
     return result
 
 
