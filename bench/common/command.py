@@ -52,6 +52,15 @@ class View:
     width: int
     height: int
     extra: Options = dataclasses.field(default_factory=dict)  # what it needs beyond PAPER_SETTINGS
+    bands: tuple[tuple[int, int], ...] = ()  # rows [first, last) that are looked at; none: all
+
+    def rows(self) -> list[int]:
+        """The rows of the bands, or all."""
+        return [y for first, last in self.bands or ((0, self.height),) for y in range(first, last)]
+
+    def whole(self) -> "View":
+        """The same without bands."""
+        return dataclasses.replace(self, bands=())
 
     def options(self) -> Options:
         lit: Options = {}
@@ -72,11 +81,23 @@ class Relumine:
         return subprocess.run([self.program, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
 
     def render(self, view: View, options: Options, seed: int, threads: int) -> Run:
-        """Raises Refused where the command lacks what `options` ask for, Failed where it ends otherwise than well."""
+        """Raises Refused where the command lacks what `options` ask for, Failed where it ends otherwise than well.
+
+        Of a view with bands these alone, one below the other; statistics are then what the whole would come to.
+        """
+        if view.bands:
+            crops = [{"crop": (0, first, view.width, last)} for first, last in view.bands]
+            runs = [self._run(view.whole(), {**options, **crop}, seed, threads) for crop in crops]
+            return stacked(runs, view.height / len(view.rows()))
+        return self._run(view, options, seed, threads)
+
+    def _run(self, view: View, options: dict, seed: int, threads: int) -> Run:
         picture, stats = self.scratch / "picture.pfm", self.scratch / "stats.json"
         every = {**PAPER_SETTINGS, **view.options(), **options, "seed": seed, "threads": threads, "stats": stats}
         command = [str(self.program), "render", str(view.scene), "-o", str(picture), "--quiet"]
-        command += [word for key, value in every.items() for word in (f"--{key}", str(value)) if word]
+        for key, value in every.items():
+            values = value if isinstance(value, tuple) else (value,)
+            command += [word for word in (f"--{key}", *map(str, values)) if word]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -92,6 +113,27 @@ class Relumine:
         under_white = dataclasses.replace(view, environment=white, env_rotate=0.0)
         run = self.render(under_white, {"method": "path", "max-depth": 0, "radiance": "auto"}, seed=0, threads=0)
         return run.picture.max(axis=2) < 0.5
+
+
+def stacked(runs: list[Run], scale: float) -> Run:
+    """Bands of a picture as one run; times and counts are sums times `scale`."""
+    stats = scaled_sum([run.stats for run in runs], scale)
+    stats["peak_memory_bytes"] = max(run.stats["peak_memory_bytes"] for run in runs)
+    return Run(np.concatenate([run.picture for run in runs]), stats, scale * sum(run.process_cpu for run in runs))
+
+
+def scaled_sum(every: list[dict], scale: float) -> dict:
+    """Of numbers under the same keys, which not all need to have; other values are the first's."""
+    result: dict = {}
+    for key in dict.fromkeys(key for one in every for key in one):
+        values = [one[key] for one in every if key in one]
+        if isinstance(values[0], dict):
+            result[key] = scaled_sum(values, scale)
+        elif isinstance(values[0], (int, float)) and not isinstance(values[0], bool):
+            result[key] = scale * sum(values)
+        else:
+            result[key] = values[0]
+    return result
 
 
 def looked_up(stats: dict, name: str) -> float | None:

@@ -85,7 +85,8 @@ class References:
     def _file(self, view: View) -> pathlib.Path:
         light = digest(view.environment) if view.environment else None
         size = view.width if view.width == view.height else f"{view.width}x{view.height}"
-        what = [SCHEME, digest(view.scene), light, view.env_rotate, size, {**view.extra, **self.options}]
+        parts = [view.bands] if view.bands else []
+        what = [SCHEME, digest(view.scene), light, view.env_rotate, size, {**view.extra, **self.options}, *parts]
         key = hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:10]
         name = "-".join([view.scene.stem, *([view.environment.stem] if view.environment else [])])
         return self.folder / f"{name}-{size}-{key}.npz"

@@ -13,7 +13,7 @@ import meshes
 import metrics
 import pictures
 import plots
-from command import View, looked_up
+from command import Run, View, looked_up, stacked
 
 
 def cube() -> meshes.Mesh:
@@ -229,6 +229,23 @@ class Views(unittest.TestCase):
         self.assertEqual(lit.options(), {"environment": "sky.pfm", "env-rotate": 30.0, "size": "64x32"})
         own = View(pathlib.Path("a.glb"), None, 0.0, 64, 32, {"radiance": "direct"})
         self.assertEqual(own.options(), {"size": "64x32", "radiance": "direct"})
+
+    def test_rows_of_a_view(self):
+        whole = View(pathlib.Path("a.glb"), None, 0.0, 64, 6)
+        self.assertEqual(whole.rows(), [0, 1, 2, 3, 4, 5])
+        banded = View(pathlib.Path("a.glb"), None, 0.0, 64, 6, bands=((1, 3), (5, 6)))
+        self.assertEqual(banded.rows(), [1, 2, 5])
+        self.assertEqual(banded.whole(), whole)
+
+    def test_bands_as_one_run(self):
+        def band(rows, seconds, value, **more):
+            return Run(np.full((rows, 4, 3), value), {"cpu_seconds": seconds, "peak_memory_bytes": 7 + rows, "version": "1",
+                                                      "stopped": False, "rays": {"gather": 10 * rows}, **more}, seconds)
+        run = stacked([band(1, 2.0, 0.0), band(2, 3.0, 1.0, cache={"points": 5})], 4.0)
+        self.assertEqual(run.picture[:, 0, 0].tolist(), [0, 1, 1])
+        self.assertEqual(run.stats, {"cpu_seconds": 20, "peak_memory_bytes": 9, "version": "1", "stopped": False,
+                                     "rays": {"gather": 120}, "cache": {"points": 20}})
+        self.assertEqual(run.process_cpu, 20)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 """The measurements: errors and times, thread scaling, sweeps, convergence. Every one returns plain data for JSON."""
 import dataclasses
 import pathlib
+import random
 import statistics
 import sys
 
@@ -9,7 +10,7 @@ import numpy as np
 
 import metrics
 import pictures
-from command import Options, Refused, Relumine, Run, View, looked_up
+from command import Options, Refused, Relumine, Run, View, looked_up, scaled_sum
 from make_scenes import Scene
 from reference import Reference, References
 
@@ -26,8 +27,8 @@ def methods_of(n: int) -> dict[str, Options]:
         "gather-single": {**gather, "gather-packets": "off"},
         "gather": gather,
         "reproject": {"method": "reproject", **cache},
-        "reproject-mc": {"method": "reproject-mc", **cache, "bsdf-share": 0.1},
-        "reproject-mc-0": {"method": "reproject-mc", **cache, "bsdf-share": 0},
+        "reproject-mc": {"method": "reproject-mc", **cache, "gather-rays": n * n, "bsdf-share": 0.1},
+        "reproject-mc-0": {"method": "reproject-mc", **cache, "gather-rays": n * n, "bsdf-share": 0},
     }
 
 
@@ -57,8 +58,19 @@ class Cell:
     def name(self) -> str:
         return f"{self.scene.name}, {self.environment}"
 
-    def view(self, size: int) -> View:
-        return View(self.scene.file, self.file, self.scene.env_rotate, size, size)
+    def view(self, size: int, bands: tuple[tuple[int, int], ...] = ()) -> View:
+        return View(self.scene.file, self.file, self.scene.env_rotate, size, size, bands=bands)
+
+
+BAND_ROWS = 4
+
+
+def bands_of(size: int, count: int) -> tuple[tuple[int, int], ...]:
+    """`count` bands of BAND_ROWS rows, one at a place drawn within each of as many equal parts of the picture."""
+    draw = random.Random(512)
+    parts = [(i * size // count, (i + 1) * size // count) for i in range(count)]
+    firsts = [draw.randrange(first, last - BAND_ROWS + 1) for first, last in parts]
+    return tuple((first, first + BAND_ROWS) for first in firsts)
 
 
 def log(text: str) -> None:
@@ -87,7 +99,7 @@ class Lab:
         return self.refused[name] or None
 
     def surfaces(self, view: View) -> np.ndarray:
-        return self.relumine.surfaces(view, self.white)
+        return self.relumine.surfaces(view.whole(), self.white)[view.rows()]
 
     def converged(self, view: View, keep: np.ndarray, smallest: metrics.Errors) -> tuple[Reference, dict]:
         """A reference whose own error is below `smallest` / reference_ratio, if the passes allowed suffice."""
@@ -155,8 +167,12 @@ def ratio(a: float | None, b: float | None) -> float | None:
 # --- errors and times ---
 
 
-def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], size: int, repeats: int) -> dict:
-    """Every method once a repeat, in another order and with another seed each time."""
+def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], view: View, repeats: int) -> dict:
+    """Every method once a repeat, in another order and with another seed each time.
+
+    Where the view has bands, errors are theirs, and only `reproject` is rendered as a whole (see `render_once`).
+    """
+    size = view.height
     skipped = {name: lab.missing(name, options, cell) for name, options in methods.items()}
     present = [name for name in methods if not skipped[name]]
     if not present:
@@ -165,11 +181,15 @@ def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], size: int
     for repeat in range(repeats):
         turn = repeat % len(present)
         for name in present[turn:] + present[:turn]:
-            run = lab.relumine.render(cell.view(size), methods[name], seed=repeat + 1, threads=lab.threads)
+            run = render_once(lab, view, methods[name], repeat + 1)
             runs[name].append(run)
             log(f"    {name}, repeat {repeat + 1}: {run.cpu:.2f} CPU seconds")
-    errors, reference = lab.measured(cell.view(size), runs)
-    keep_pictures(lab, cell, size, runs)
+    if view.bands:
+        take_whole_times(runs)
+        keep_whole_pictures(lab, cell, runs)
+        runs = {name: [in_bands(run, view) for run in several] for name, several in runs.items()}
+    errors, reference = lab.measured(view, runs)
+    keep_pictures(lab, cell, view, runs)
     found = {name: {"errors": errors[name], **costs(runs[name])} for name in present}
     add_speed_ups(found)
     found.update({name: {"skipped": reason} for name, reason in skipped.items() if reason})
@@ -178,10 +198,47 @@ def measure_methods(lab: Lab, cell: Cell, methods: dict[str, Options], size: int
             "methods": {name: found[name] for name in methods}}
 
 
-def keep_pictures(lab: Lab, cell: Cell, size: int, runs: dict[str, list[Run]]) -> None:
+def render_once(lab: Lab, view: View, options: Options, seed: int) -> Run:
+    """The whole picture of `reproject`, whose records serve all of it; of other methods what the view shows."""
+    seen = view.whole() if options["method"] == "reproject" else view
+    return lab.relumine.render(seen, options, seed=seed, threads=lab.threads)
+
+
+def take_whole_times(runs: dict[str, list[Run]]) -> None:
+    """Bands of `reproject-mc` make records for nearly all of the picture each time: its time is that of `reproject`,
+    which makes the same, and of its own rays."""
+    for name in (name for name in runs if name.startswith("reproject-mc")):
+        if "reproject" not in runs:
+            raise SystemExit(f"--bands: {name} takes times of reproject, which --methods does not name")
+        runs[name] = [dataclasses.replace(with_rays(whole, run), picture=run.picture)
+                      for run, whole in zip(runs[name], runs["reproject"])]
+
+
+def with_rays(whole: Run, mc: Run) -> Run:
+    """`reproject` with the product rays of `reproject-mc` on top."""
+    seconds = mc.stats["cache"]["cpu_seconds"]["product"]
+    times = scaled_sum([{key: whole.stats[key] for key in ("cpu_seconds", "total_seconds", "stage_seconds")}],
+                       1 + seconds / whole.cpu)
+    cache = {**whole.stats["cache"],
+             "cpu_seconds": {**whole.stats["cache"]["cpu_seconds"], "product": seconds}}
+    stats = {**whole.stats, **times, "cache": cache, "command": mc.stats["command"]}
+    return dataclasses.replace(whole, stats=stats, process_cpu=whole.process_cpu + seconds)
+
+
+def in_bands(run: Run, view: View) -> Run:
+    whole = run.picture.shape[0] == view.height
+    return dataclasses.replace(run, picture=run.picture[view.rows()]) if whole else run
+
+
+def keep_whole_pictures(lab: Lab, cell: Cell, runs: dict[str, list[Run]]) -> None:
+    for name in (name for name in runs if name == "reproject"):
+        file = lab.kept_pictures / f"{cell.scene.name}-{cell.environment}-{name}-whole.pfm"
+        pictures.write_pfm(file, runs[name][0].picture)
+
+
+def keep_pictures(lab: Lab, cell: Cell, view: View, runs: dict[str, list[Run]]) -> None:
     """For the picture sheet: the first repeat of each method, the reference, and where surfaces are."""
     base = f"{cell.scene.name}-{cell.environment}"
-    view = cell.view(size)
     everything = {name: several[0].picture for name, several in runs.items()}
     everything["reference"] = lab.references.get(view).picture
     everything["surfaces"] = np.repeat(lab.surfaces(view)[:, :, None].astype(float), 3, axis=2)

@@ -19,7 +19,7 @@ from experiment import Cell, Lab, log  # noqa: E402
 from reference import References, digest  # noqa: E402
 
 PARTS = ("methods", "scaling", "sweeps", "convergence")
-REPORTED = ("n", "size", "sweep_size", "repeats", "threads", "quick", "reference_ratio", "reference_rays",
+REPORTED = ("n", "size", "sweep_size", "bands", "repeats", "threads", "quick", "reference_ratio", "reference_rays",
             "reference_light_samples", "reference_passes")  # settings
 
 
@@ -54,6 +54,9 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--reference-ratio", type=float,
                         help="the smallest error must be so many times the reference's own (default: 5)")
     parser.add_argument("--reference-passes", type=int, help="at most (default: 64)")
+    parser.add_argument("--bands", type=int, default=0,
+                        help="errors and references of so many bands of 4 rows, drawn once, instead of the whole "
+                        "picture; gather is rendered and timed in these alone (part methods; 0: whole pictures)")
     parser.add_argument("--resume", action="store_true", help="keep what results.json holds of the same run")
     parser.add_argument("--report-only", action="store_true", help="write the reports anew from results.json")
     args = parser.parse_args()
@@ -71,6 +74,8 @@ def parse_arguments() -> argparse.Namespace:
         parser.error(f"{args.relumine} does not exist: cmake --preset release && cmake --build --preset release")
     if args.armadillo and not args.armadillo.exists():
         parser.error(f"--armadillo: {args.armadillo} does not exist")
+    if not 0 <= args.bands <= args.size // experiment.BAND_ROWS:
+        parser.error(f"--bands: expected 0 ... {args.size // experiment.BAND_ROWS}, found {args.bands}")
     if args.repeats < 1:
         parser.error(f"--repeats: expected at least 1, found {args.repeats}")
     return args
@@ -113,6 +118,7 @@ def fingerprint(args: argparse.Namespace) -> dict:
     """What must be the same for results to be kept by --resume."""
     return {"program": digest(args.relumine), "size": args.size, "sweep_size": args.sweep_size,
             "repeats": args.repeats, "threads": args.threads, "quick": args.quick, "methods": args.methods, "n": args.n,
+            "bands": args.bands,
             "reference": [args.reference_rays, args.reference_light_samples, args.reference_ratio]}
 
 
@@ -175,8 +181,9 @@ def measure(args: argparse.Namespace) -> dict:
                "settings": {name: getattr(args, name) for name in REPORTED}}
         results = Results(args.out / "results.json", run, args.resume)
         methods = {name: options for name, options in experiment.methods_of(args.n).items() if name in args.methods}
+        bands = experiment.bands_of(args.size, args.bands)
         steps = {
-            "methods": lambda c: experiment.measure_methods(lab, c, methods, args.size, args.repeats),
+            "methods": lambda c: experiment.measure_methods(lab, c, methods, c.view(args.size, bands), args.repeats),
             "scaling": lambda c: scaling_of(lab, c, results, args),
             "sweeps": lambda c: experiment.measure_sweeps(lab, c, args.sweep_size, args.quick),
             "convergence": lambda c: experiment.measure_convergence(lab, c, args.sweep_size),

@@ -88,6 +88,9 @@ def about_run(run: dict) -> list[str]:
              + f". n = {s['n']}; {s['size']} × {s['size']} pixels (sweeps {s['sweep_size']} × {s['sweep_size']}), one centred ray per "
              f"pixel, {s['threads']} thread(s), {s['repeats']} repeat(s), each with another seed; secondary radiance: the "
              "environment on a miss, black on a hit.", ""]
+    if s.get("bands"):
+        lines += [f"Errors of {s['bands']} bands of 4 rows, drawn once for all methods, and of the whole picture's records; the "
+                  "times of `gather` and of `reproject-mc`'s rays are those of the bands, scaled to the whole picture.", ""]
     if s["quick"]:
         lines += ["**A quick run: it shows that everything runs, its numbers mean nothing.**", ""]
     if run.get("resumed"):
@@ -330,7 +333,9 @@ def write_tables(data: dict, folder: pathlib.Path) -> list[pathlib.Path]:
 
 def write_sheets(data: dict, folder: pathlib.Path) -> list[pathlib.Path]:
     """One sheet per environment, after the paper's figure 2: a row per method, then a row per method of its errors."""
-    written = []
+    written: list[pathlib.Path] = []
+    if data["run"]["settings"].get("bands"):
+        return written  # there are no whole pictures to show
     for environment in dict.fromkeys(cell["environment"] for cell in data["methods"].values()):
         cells = [cell for cell in data["methods"].values() if cell["environment"] == environment]
         names = [name for name in SHEET_ROWS if all("errors" in cell["methods"].get(name, {}) for cell in cells)]

@@ -78,6 +78,15 @@ bool take(std::span<const BitRect> rects, Mask& open) {
     return !hn::AllTrue(R(), hn::Eq(taken, hn::Zero(R())));
 }
 
+/// Whether a bit of the rectangle is open.
+HWY_INLINE bool any_open(const BitRect& rect, Mask& open) {
+    VR found = hn::Zero(R());
+    for_rows(rect, open, [&](const std::uint64_t* words, VR bits) {
+        found = hn::Or(found, hn::And(hn::Load(R(), words), bits));
+    });
+    return !hn::AllTrue(R(), hn::Eq(found, hn::Zero(R())));
+}
+
 /// Columns [begin, begin + Lanes) of the square, begin a multiple of the lanes: canvas and bits are then read
 /// and written at multiples of a vector.
 struct Block {
@@ -199,7 +208,8 @@ bool draw_all_missed(std::span<const BitRect> masks, std::span<const TexelRect> 
     Mask drawn;
     const auto paint_one = canvas.direct.empty() ? paint_missed<false> : paint_missed<true>;
     for (std::size_t i = masks.size(); i-- > 0;)
-        if (!masks[i].empty()) paint_one(masks[i], texels[i], texture, canvas, drawn);
+        if (!masks[i].empty() && any_open(masks[i], canvas.open))
+            paint_one(masks[i], texels[i], texture, canvas, drawn);
     MaskRow any;
     for (std::size_t y = 0; y < mask_side; ++y) {
         any = any | drawn.rows[y];

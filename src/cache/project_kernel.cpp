@@ -173,11 +173,16 @@ void project_each(const Surfels& surfels, std::size_t begin, std::size_t end, co
     for (std::size_t i = begin; i < end; i += hn::Lanes(u)) {
         SquarePoint now[4];
         Vec3s middle{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
-        for (std::size_t c = 0; c < 4; ++c) {
+        const auto project_corner = [&](std::size_t c) HWY_ATTR {
             const Vec3s q = corner<rotated>(surfels, i, c, projection.turn);
             now[c] = to_square(add(q, shifts));
             if constexpr (rotated) middle = add(middle, q);
-        }
+        };
+        // Not a loop, which would leave the corners in memory.
+        project_corner(0);
+        project_corner(1);
+        project_corner(2);
+        project_corner(3);
         const Box texels = texel_box(surfels, i, bits_per_texel), mask = bounds(now);
         const auto above = above_horizon(now), used = hn::And(above, usable(now, mask, texels));
         hn::StoreU(hn::IfThenElseZero(hn::RebindMask(u, used), pack(mask)), u,
