@@ -196,9 +196,9 @@ TEST(Png, AFlippedBitInThePixelsIsAnError) {
 
 TEST(Png, OtherContentIsNamed) {
     EXPECT_EQ(image_error([] { (void)decode_byte_image(test::bytes_of("GIF89a"), "a.gif"); }),
-              "a.gif: expected a PNG or JPEG picture, found other content");
+              "a.gif: expected a PNG, JPEG or WebP picture, found other content");
     EXPECT_EQ(image_error([] { (void)decode_byte_image({}, "none"); }),
-              "none: expected a PNG or JPEG picture, found no bytes");
+              "none: expected a PNG, JPEG or WebP picture, found no bytes");
 }
 
 }  // namespace

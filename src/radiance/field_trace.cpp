@@ -139,6 +139,7 @@ class ElementTracer {
         if (!is_finite(emission + found)) return;
         const float share = pi / static_cast<float>(settings_.rays);
         add_arriving(view_.light, normal_, direction, (emission + found) * share);
+        if (luminance(found) > 0) view_.finds.push_back(luminance(found));
         if (luminance(found) > strongest_) {
             strongest_ = luminance(found);
             view_.strongest = {};

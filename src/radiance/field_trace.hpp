@@ -25,6 +25,7 @@ struct ElementView {
     std::vector<Landing> landings;  // in order of rays
     IrradianceVector light;         // what arrives straight from lights or through lobes alone
     IrradianceVector strongest;     // part of it: the most that a single ray found along lobes
+    std::vector<float> finds;       // luminance that rays found along lobes, where that is any
     float distance = infinity;      // metres, the geometric mean of what is seen
     float contrast = 0;  // W·m⁻²: how far what the points receive straight from lights differs, over noise
 };

@@ -8,10 +8,6 @@
 namespace relumine {
 namespace {
 
-/// Light that is found along lobes by chance counts for no more than this, times the mean that surfaces
-/// reflect: one ray of a map stands for many, and would be seen as a dot.
-constexpr float most_found = 64;
-
 /// Most surfaces emit nothing: not worth a vertex.
 bool may_emit(const Transport& t, const Hit& hit) {
     const Mesh& mesh = t.scene.meshes[index(t.scene.instances[hit.instance].mesh)];
@@ -35,7 +31,8 @@ Spectrum reflected_field(const IncidentRadiance& source, const PathState& path, 
         if (irradiance) known += at.weight * *irradiance * inv_pi;
         return irradiance.has_value();
     });
-    const float most = most_found * source.field->mean_radiance(), brightness = luminance(found);
+    // One ray of a map stands for many: a rare find would be seen as a dot.
+    const float most = source.field->most_found(), brightness = luminance(found);
     return known + (brightness > most ? found * (most / brightness) : found);
 }
 

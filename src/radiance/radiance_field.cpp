@@ -18,7 +18,8 @@ constexpr std::uint32_t seed_rays = 64;   // that a seed traces each time
 constexpr std::uint32_t seed_rounds = 4;  // later ones find what cells were divided into
 constexpr std::size_t generation = 1024;  // elements whose rays are traced before their links are made
 
-constexpr double most_by_chance = 2;  // a ray's find along lobes, over the mean light of elements
+constexpr double most_by_chance = 2;        // a ray's find along lobes, over the mean light of elements
+constexpr float most_found_by_chance = 64;  // a gather ray's, over their mean radiance
 
 constexpr std::array bright_factors{4.0, 16.0, 64.0, 256.0};  // radiosity of bright elements over the mean
 constexpr double least_bright_noise = 0.02;                   // of all light, that is worth sampling apart
@@ -55,7 +56,7 @@ class FieldBuilder {
                  RayCounts& rays)
         : t_(t), seeds_(seeds), settings_(settings), counts_(rays) {}
 
-    FieldCells run(FieldFigures& figures, BrightCones& cones, float& mean_radiance) {
+    FieldCells run(FieldFigures& figures, BrightCones& cones, float& mean_radiance, float& most_found) {
         std::vector<Landing> seen;
         for (std::uint32_t round = 0; round < seed_rounds; ++round) {
             const std::vector<Landing> more = seed_landings(round);
@@ -70,6 +71,7 @@ class FieldBuilder {
             close();
         }
         while (links_.first.size() <= cells.elements().size()) links_.end_element();  // a stopped build
+        common_find_ = common_find();
         limit_strongest();
         figures.iterations = reflect();
         find_bright();
@@ -84,6 +86,7 @@ class FieldBuilder {
                              / std::max<double>(1, static_cast<double>(links_.links.size() + unresolved_));
         cones = std::move(cones_);
         mean_radiance = mean_radiance_;
+        most_found = std::max(common_find_, most_found_by_chance * mean_radiance_);
         return cells;
     }
 
@@ -203,8 +206,8 @@ class FieldBuilder {
         FieldElement& element = cells_->elements()[traced_];
         element.irradiance = view.light;
         strongest_.push_back(view.strongest);
-        const float light =
-            luminance(view.light.towards(element.normal) - view.strongest.towards(element.normal));
+        finds_.insert(finds_.end(), view.finds.begin(), view.finds.end());
+        const float light = luminance(view.light.towards(element.normal));
         light_ += light;
         const int coarse = cells_->scale().coarsest_level(element.position);
         const bool divisible = !element.coarse && element.level < coarse + cells_->scale().finest;
@@ -214,10 +217,21 @@ class FieldBuilder {
         return edge && (divisible || element.coarse);
     }
 
-    /// Light that one ray has found by chance through glass or in a mirror, and that would stand for 1/128 of
-    /// all that an element sees, counts for no more than a few times what elements receive on average.
+    /// What one find along lobes in a hundred exceeds. Where bright finds are common, as of a bulb in a ball
+    /// of glass, that is as much as any.
+    [[nodiscard]] float common_find() {
+        if (finds_.empty()) return infinity;
+        const auto rank = static_cast<std::ptrdiff_t>((finds_.size() - 1) * 99 / 100);
+        std::ranges::nth_element(finds_, finds_.begin() + rank);
+        return finds_[static_cast<std::size_t>(rank)];
+    }
+
+    /// Light that hardly any ray finds, and then a lot of it, would be seen as dots: a ray of an element
+    /// brings no more than twice what elements receive on average.
     void limit_strongest() {
-        const auto limit = static_cast<float>(most_by_chance * light_ / static_cast<double>(traced_));
+        const double mean_light = light_ / std::max(1.0, static_cast<double>(traced_));
+        const auto limit = std::max(static_cast<float>(most_by_chance * mean_light),
+                                    common_find_ * pi / static_cast<float>(settings_.rays));
         for (std::size_t i = 0; i < traced_; ++i) {
             FieldElement& e = cells_->elements()[i];
             const float found = luminance(strongest_[i].towards(e.normal));
@@ -349,8 +363,10 @@ class FieldBuilder {
     std::vector<Spectrum> irradiance_;
     std::size_t traced_ = 0, unresolved_ = 0;
     std::vector<IrradianceVector> strongest_;  // by traced element
-    double light_ = 0;                         // of traced elements: sum of irradiance straight from lights
-    PointReservoirs met_;                      // where rays from the seeds have met elements
+    std::vector<float> finds_;                 // of all rays, along lobes
+    float common_find_ = infinity;
+    double light_ = 0;               // of traced elements: sum of irradiance straight from lights
+    PointReservoirs met_;            // where rays from the seeds have met elements
     std::vector<StartPoint> edges_;  // of elements since the last octave that edges of shadows cross
 };
 
@@ -358,7 +374,7 @@ class FieldBuilder {
 
 RadianceField::RadianceField(const Transport& t, std::span<const FieldSeed> seeds,
                              const FieldSettings& settings, RayCounts& rays)
-    : cells_(FieldBuilder(t, seeds, settings, rays).run(figures_, cones_, mean_radiance_)),
+    : cells_(FieldBuilder(t, seeds, settings, rays).run(figures_, cones_, mean_radiance_, most_found_)),
       neighbors_(t, cells_, settings.threads, rays) {
     figures_.bytes = cells_.bytes() + neighbors_.bytes();
 }

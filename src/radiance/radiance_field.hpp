@@ -65,6 +65,8 @@ class RadianceField {
     [[nodiscard]] const BrightCones& bright_cones() const { return cones_; }
     /// Of all that is reflected, over the elements' area; luminance, W·sr⁻¹·m⁻².
     [[nodiscard]] float mean_radiance() const { return mean_radiance_; }
+    /// What a ray finds along lobes counts for no more than this; luminance, W·sr⁻¹·m⁻².
+    [[nodiscard]] float most_found() const { return most_found_; }
 
     [[nodiscard]] const FieldFigures& figures() const { return figures_; }
     [[nodiscard]] const FieldCells& cells() const { return cells_; }
@@ -73,6 +75,7 @@ class RadianceField {
     FieldFigures figures_;     // filled while cells_ is made
     BrightCones cones_;        // likewise
     float mean_radiance_ = 0;  // likewise
+    float most_found_ = 0;     // likewise
     FieldCells cells_;
     FieldNeighbors neighbors_;
 };

@@ -44,7 +44,8 @@ TEST(LoadScene, NamesTheExtensionsThatItKnows) {
         (void)load_scene("scene.fbx");
         FAIL();
     } catch (const SceneError& error) {
-        EXPECT_NE(std::string{error.what()}.find(".gltf, .glb, .pbrt, .pbrt.gz, .ply"), std::string::npos);
+        EXPECT_NE(std::string{error.what()}.find(".gltf, .glb, .pbrt, .pbrt.gz, .xml, .ply"),
+                  std::string::npos);
     }
 }
 
