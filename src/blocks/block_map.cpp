@@ -29,6 +29,13 @@ std::size_t BlockMap::bytes() const {
     return sizeof(BlockMap) + sizeof(float) * floats + sizeof(std::uint16_t) * (known.size() + open.size());
 }
 
+void BlockMap::resize(const DirectionGrid& grid, bool reflects) {
+    direct.resize(grid);
+    if (reflects) indirect.resize(grid);
+    known.assign(grid.tiles, 0);
+    open.assign(grid.tiles, 0);
+}
+
 void BlockMap::finish(const DirectionGrid& grid) {
     std::vector<float> share(grid.tiles);
     for (std::size_t tile = 0; tile < grid.tiles; ++tile)

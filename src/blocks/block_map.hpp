@@ -44,6 +44,9 @@ struct BlockMap {
     /// Memory that the map occupies.
     [[nodiscard]] std::size_t bytes() const;
 
+    /// Knows nothing afterwards.
+    void resize(const DirectionGrid& grid, bool reflects);
+
     /// Derives what is kept by tile.
     void finish(const DirectionGrid& grid);
 };

@@ -2,6 +2,7 @@
 // Grouping samples and splitting blocks.
 #include "blocks/block_partition.hpp"
 
+#include "blocks/map_fill.hpp"
 #include "blocks/parallax.hpp"
 
 namespace relumine {
@@ -37,21 +38,26 @@ Points some_of(const Points& group, std::size_t most) {
 
 class Partition {
   public:
-    Partition(const MapSource& source, const BlockSettings& settings, std::vector<BlockMap>& maps,
+    Partition(const MapSource& source, const BlockSettings& settings, std::vector<MapRecord>& records,
               RayCounts& rays)
-        : source_(source), settings_(settings), maps_(maps), rays_(rays) {
+        : source_(source),
+          settings_(settings),
+          records_(records),
+          rays_(rays),
+          fill_(source.grid, source.environment) {
         for (auto& plane : bsdf_) plane.resize(source.grid.tiles);
     }
 
-    /// Adds the maps of the samples in the square block of `size` pixels with its corner at (x, y).
+    /// Adds the records of the samples in the square block of `size` pixels with its corner at (x, y).
     void divide(Points points, int x, int y, int size) {
         while (!points.empty()) {
             const Points group = take_group(points, x, y, size);
-            BlockMap map = traced(group, x, y, size);
-            if (size > settings_.smallest && group.size() > 1 && error_of(map, group) > settings_.tolerance)
-                divide_quarters(group, x, y, size / 2);
-            else
-                maps_.push_back(std::move(map));
+            MapRecord record = traced(group, x, y, size);
+            record.has_map = size <= settings_.smallest || group.size() == 1
+                             || error_of(record, group) <= settings_.tolerance;
+            const bool divided = !record.has_map;
+            records_.push_back(std::move(record));
+            if (divided) divide_quarters(group, x, y, size / 2);
         }
     }
 
@@ -76,19 +82,18 @@ class Partition {
         return group;
     }
 
-    BlockMap traced(const Points& group, int x, int y, int size) {
+    MapRecord traced(const Points& group, int x, int y, int size) {
         std::vector<GatherPoint> starts;
         for (const BlockPoint* p : some_of(group, most_starts)) starts.push_back(p->point->gather);
         weigh_tiles(group);
-        BlockMap map;
-        map.anchor = starts.front();
-        map.footprint = group.front()->point->footprint;
-        map.size = static_cast<float>(size);
-        map.center_x = static_cast<float>(x) + 0.5f * map.size;
-        map.center_y = static_cast<float>(y) + 0.5f * map.size;
-        trace_map(source_, starts, tile_rays(group, starts),
-                  hash(group.front()->point->key, static_cast<std::uint64_t>(size)), map, distances_, rays_);
-        return map;
+        MapRecord record;
+        record.footprint = group.front()->point->footprint;
+        record.size = static_cast<float>(size);
+        record.center_x = static_cast<float>(x) + 0.5f * record.size;
+        record.center_y = static_cast<float>(y) + 0.5f * record.size;
+        trace_record(source_, starts, tile_rays(group, starts),
+                     hash(group.front()->point->key, static_cast<std::uint64_t>(size)), record, rays_);
+        return record;
     }
 
     /// By tile, the mean f·|cos θ| of some receivers of the group.
@@ -123,11 +128,13 @@ class Partition {
         return tile_rays;
     }
 
-    [[nodiscard]] float error_of(const BlockMap& map, const Points& group) const {
+    [[nodiscard]] float error_of(const MapRecord& record, const Points& group) {
         float extent = 0;
         for (const BlockPoint* p : group)
-            extent = std::max(extent, length_squared(p->point->gather.position - map.anchor.position));
-        return parallax_error(source_.grid, map, distances_, weights_, std::sqrt(extent), settings_.level);
+            extent = std::max(extent, length_squared(p->point->gather.position - record.anchor.position));
+        fill_.run(record, {}, source_.radiance.reflects(), map_);
+        fill_.distances(record, distances_);
+        return parallax_error(source_.grid, map_, distances_, weights_, std::sqrt(extent), settings_.level);
     }
 
     void divide_quarters(const Points& group, int x, int y, int size) {
@@ -144,19 +151,21 @@ class Partition {
 
     const MapSource& source_;
     const BlockSettings& settings_;
-    std::vector<BlockMap>& maps_;
+    std::vector<MapRecord>& records_;
     RayCounts& rays_;
+    MapFill fill_;
+    BlockMap map_;                            // from one record alone
     std::vector<float> weights_, distances_;  // of the group: by tile, by texel
     std::array<std::vector<float>, 3> bsdf_;  // scratch
 };
 
 }  // namespace
 
-std::vector<BlockMap> make_maps(const MapSource& source, const PixelRect& cell,
-                                std::span<const BlockPoint> points, const BlockSettings& settings,
-                                RayCounts& rays) {
-    std::vector<BlockMap> maps;
-    Partition partition(source, settings, maps, rays);
+std::vector<MapRecord> make_records(const MapSource& source, const PixelRect& cell,
+                                    std::span<const BlockPoint> points, const BlockSettings& settings,
+                                    RayCounts& rays) {
+    std::vector<MapRecord> records;
+    Partition partition(source, settings, records, rays);
     const int size = settings.largest;
     for (int y = cell.y0; y < cell.y1; y += size)
         for (int x = cell.x0; x < cell.x1; x += size) {
@@ -166,7 +175,7 @@ std::vector<BlockMap> make_maps(const MapSource& source, const PixelRect& cell,
                     inside.push_back(&p);
             partition.divide(std::move(inside), x, y, size);
         }
-    return maps;
+    return records;
 }
 
 }  // namespace relumine

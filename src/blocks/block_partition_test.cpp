@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "blocks/blend.hpp"
+#include "blocks/map_fill.hpp"
 #include "blocks/parallax.hpp"
 #include "blocks/test_maps.hpp"
 
@@ -82,7 +83,11 @@ constexpr PixelRect cell{0, 0, cell_pixels, cell_pixels};
 std::vector<BlockMap> maps_of(const MapStage& stage, const Samples& samples, BlockSettings settings = {}) {
     const FlushDenormals flush;
     RayCounts rays;
-    return make_maps(stage.source(), cell, samples.blocks, settings, rays);
+    std::vector<BlockMap> maps;
+    MapFill fill(stage.grid(), stage.environment());
+    for (const MapRecord& record : make_records(stage.source(), cell, samples.blocks, settings, rays))
+        if (record.has_map) fill.run(record, {}, false, maps.emplace_back());
+    return maps;
 }
 
 Blend blend_of(const CachePoint& point, const std::vector<BlockMap>& maps) {

@@ -8,15 +8,11 @@ namespace {
 /// A direction that stands lower than this over the anchor (sine) starts where it stands highest.
 constexpr float low = 0.02f;
 
-struct MapRay {
-    std::uint32_t first_texel = 0, texels = 0;  // that it stands for
-};
-
 class MapTracer {
   public:
-    MapTracer(const MapSource& source, std::span<const GatherPoint> starts, std::uint64_t key, BlockMap& map,
-              std::vector<float>& distances, RayCounts& counts)
-        : source_(source), starts_(starts), key_(key), map_(map), distances_(distances), counts_(counts) {}
+    MapTracer(const MapSource& source, std::span<const GatherPoint> starts, std::uint64_t key,
+              MapRecord& record, RayCounts& counts)
+        : source_(source), starts_(starts), key_(key), record_(record), counts_(counts) {}
 
     void run(const TileRays& tile_rays) {
         constexpr auto tile_size = static_cast<std::uint32_t>(tile_texels);
@@ -26,6 +22,7 @@ class MapTracer {
             for (std::uint32_t i = 0; i < tile_size; i += texels) add(tile * tile_size + i, texels);
         }
         if (pending_ > 0) trace();
+        record_.pad();
     }
 
   private:
@@ -38,7 +35,8 @@ class MapTracer {
         const GatherPoint* start = start_of(direction);
         if (!start) return;
         const std::size_t lane = pending_++;
-        queue_[lane] = {first, texels};
+        queue_[lane] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(texels),
+                        static_cast<std::uint16_t>(texel)};
         streams_[lane] = {key_, first, static_cast<std::uint32_t>(source_.grid.texels), PointSet::sobol};
         rays_[lane] = {start->position + start->frame.n * start->offset, direction, infinity,
                        streams_[lane].bits(Dim::opacity, 2 * start->depth + 2)};
@@ -76,51 +74,45 @@ class MapTracer {
     }
 
     void put(std::size_t lane, const Hit& hit, SplitRadiance found) {
-        const MapRay& ray = queue_[lane];
-        if (!is_black(found.direct)) found.direct *= 1 - source_.split.of_emission(rays_[lane], hit).share;
-        if (!is_black(found.indirect) && source_.split.reflects_brightly(rays_[lane], hit))
-            found.indirect = {};
+        const Ray& ray = rays_[lane];
+        if (!hit) {
+            const Tracer& tracer = source_.radiance.transport.tracer;
+            record_.open.push_back(
+                {tracer.has_coloured_panes() ? tracer.tint(ray, hit.t) : Spectrum{1}, queue_[lane]});
+            return;
+        }
+        if (!is_black(found.direct)) found.direct *= 1 - source_.split.of_emission(ray, hit).share;
+        if (!is_black(found.indirect) && source_.split.reflects_brightly(ray, hit)) found.indirect = {};
         if (!is_finite(found.total())) {
             ++counts_.non_finite;
             found = {};
         }
-        const Tracer& tracer = source_.radiance.transport.tracer;
-        const bool coloured = !hit && tracer.has_coloured_panes();
-        const Spectrum tint = coloured ? tracer.tint(rays_[lane], hit.t) : Spectrum{1};
-        for (std::uint32_t texel = ray.first_texel; texel < ray.first_texel + ray.texels; ++texel) {
-            distances_[texel] = hit.t;
-            map_.direct.put(texel, hit ? found.direct : source_.environment.texels[texel] * tint);
-            if (!map_.indirect.empty() && hit) map_.indirect.put(texel, found.indirect);
-        }
-        const auto bits =
-            static_cast<std::uint16_t>(((1u << ray.texels) - 1) << (ray.first_texel % tile_texels));
-        map_.known[ray.first_texel / tile_texels] |= bits;
-        if (!hit && tint == Spectrum{1}) map_.open[ray.first_texel / tile_texels] |= bits;
+        const auto& scene = source_.radiance.transport.scene;
+        const auto [a, b, c] = world_triangle(scene, hit.instance, hit.triangle);
+        const Vec3 normal = normalize(cross(b - a, c - a));
+        record_.add({found.direct, found.indirect, dot(normal, ray.direction.v) > 0 ? -normal : normal, hit.t,
+                     queue_[lane]},
+                    ray.origin + ray.direction.v * hit.t);
     }
 
     const MapSource& source_;
     std::span<const GatherPoint> starts_;
     std::uint64_t key_;
-    BlockMap& map_;
-    std::vector<float>& distances_;
+    MapRecord& record_;
     RayCounts& counts_;
     std::array<Ray, packet_size> rays_;
-    std::array<MapRay, packet_size> queue_;
+    std::array<TexelRun, packet_size> queue_;  // that the rays stand for
     StreamPacket streams_;
     std::size_t pending_ = 0;
 };
 
 }  // namespace
 
-void trace_map(const MapSource& source, std::span<const GatherPoint> starts, const TileRays& tile_rays,
-               std::uint64_t key, BlockMap& map, std::vector<float>& distances, RayCounts& rays) {
-    map.direct.resize(source.grid);
-    if (source.radiance.reflects()) map.indirect.resize(source.grid);
-    map.known.assign(source.grid.tiles, 0);
-    map.open.assign(source.grid.tiles, 0);
-    distances.assign(source.grid.texels, infinity);
-    MapTracer(source, starts, key, map, distances, rays).run(tile_rays);
-    map.finish(source.grid);
+void trace_record(const MapSource& source, std::span<const GatherPoint> starts, const TileRays& tile_rays,
+                  std::uint64_t key, MapRecord& record, RayCounts& rays) {
+    record.anchor = starts.front();
+    record.clear_rays();
+    MapTracer(source, starts, key, record, rays).run(tile_rays);
 }
 
 }  // namespace relumine

@@ -6,6 +6,7 @@
 
 #include <bit>
 
+#include "blocks/map_fill.hpp"
 #include "blocks/test_maps.hpp"
 
 namespace relumine {
@@ -34,9 +35,12 @@ struct Traced {
 Traced trace(const MapStage& stage, const std::vector<GatherPoint>& starts, std::uint8_t rays_per_tile = 16) {
     const FlushDenormals flush;
     Traced traced;
-    traced.map.anchor = starts[0];
-    trace_map(stage.source(), starts, TileRays(stage.grid().tiles, rays_per_tile), 7, traced.map,
-              traced.distances, traced.counts);
+    MapRecord record;
+    trace_record(stage.source(), starts, TileRays(stage.grid().tiles, rays_per_tile), 7, record,
+                 traced.counts);
+    MapFill fill(stage.grid(), stage.environment());
+    fill.run(record, {}, false, traced.map);
+    fill.distances(record, traced.distances);
     return traced;
 }
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pipeline of `cache`, row of cells by row of cells: camera hits, maps, integrals, residual rays; then
-// the filter over what the residual rays have found.
+// The pipeline of `cache`, row of cells by row of cells: camera hits, records, maps, integrals, residual
+// rays; then the filter over what the residual rays have found.
 #include "integrators/block_cache.hpp"
 
+#include <deque>
 #include <mutex>
 
 #include "base/executor.hpp"
 #include "base/pixel_rect.hpp"
 #include "blocks/block_partition.hpp"
 #include "blocks/dim_environment.hpp"
+#include "blocks/map_fill.hpp"
 #include "integrators/cache_plan.hpp"
 #include "integrators/gather_estimate.hpp"
 #include "integrators/light_source.hpp"
@@ -32,11 +34,41 @@ constexpr float bright_factor = 128, least_level = 0.05f;
 /// Texels along each side of the world's square.
 constexpr int grid_side = 64;
 
-/// A row of cells: its camera hits, and the maps that they share.
+/// A row of cells: its camera hits, the records that they made, and the maps that they share.
 struct CellRow {
     PixelRect rect;
     std::vector<std::unique_ptr<GBuffer>> samples;
-    std::vector<std::vector<BlockMap>> maps;  // by cell
+    std::vector<std::vector<MapRecord>> records;  // by cell
+    std::vector<std::vector<BlockMap>> maps;      // by cell
+
+    [[nodiscard]] std::size_t cells() const { return records.size(); }
+};
+
+/// What is alive at a time: maps need the records of the rows beside theirs, pixels the maps of the rows
+/// beside theirs.
+constexpr std::size_t rows_alive = 5, lit_row = 2;
+using RowWindow = std::deque<CellRow>;
+
+/// Maps that are not used at the moment, with their memory.
+class MapStore {
+  public:
+    [[nodiscard]] BlockMap take() {
+        const std::lock_guard lock(mutex_);
+        if (maps_.empty()) return {};
+        BlockMap map = std::move(maps_.back());
+        maps_.pop_back();
+        return map;
+    }
+    void give_back(CellRow& row) {
+        const std::lock_guard lock(mutex_);
+        for (auto& cell : row.maps)
+            for (BlockMap& map : cell) maps_.push_back(std::move(map));
+        row.maps.clear();
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<BlockMap> maps_;
 };
 
 /// What the filter needs of a pixel beside its guide.
@@ -85,9 +117,9 @@ class BlockCache final : public Integrator {
     [[nodiscard]] std::uint64_t known_bytes() const override {  // maps are not
         const std::size_t filtered = plan_.filters ? sizeof(PixelResidual) + sizeof(FilterGuide) : 0;
         const auto row =
-            static_cast<std::size_t>(std::min(view_.window.width() + 3 * cell_pixels, view_.width));
+            static_cast<std::size_t>(std::min(view_.window.width() + 5 * cell_pixels, view_.width));
         return count(region()) * (sizeof(PixelSums) + filtered)
-               + 2 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel);
+               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel);
     }
 
     void prepare(Preparation& p) override {
@@ -95,16 +127,21 @@ class BlockCache final : public Integrator {
         pixels_.assign(count(region_), {});
         residuals_.assign(plan_.filters ? count(region_) : 0, {});
         guides_.assign(plan_.filters ? count(region_) : 0, {});
-        CellRow above, here, below = make_row(region_.y0 - cell_pixels, p);
-        CellRow next = make_row(region_.y0, p);
-        for (int y = region_.y0; y < region_.y1 && !p.stop(); y += cell_pixels) {
-            above = std::move(y == region_.y0 ? below : here);
-            here = std::move(next);
-            next = make_row(y + cell_pixels, p);
-            light_row(above, here, next, p);
-            here.samples.clear();  // the row below needs the maps alone
-            if (p.progress) p.progress(static_cast<double>(y + cell_pixels - region_.y0) / region_.height());
+        RowWindow rows;
+        for (int y = region_.y0 - 2 * cell_pixels; y < region_.y1 + 2 * cell_pixels && !p.stop();
+             y += cell_pixels) {
+            rows.push_back(traced_row(y, p));
+            if (rows.size() > rows_alive) {
+                maps_.give_back(rows.front());
+                rows.pop_front();
+            }
+            if (rows.size() > lit_row) fill_row(rows, rows.size() - 2, p);
+            if (rows.size() < rows_alive) continue;
+            light_row(rows, p);
+            rows[lit_row].samples.clear();  // others need the records and maps alone
+            if (p.progress) p.progress(static_cast<double>(y - cell_pixels - region_.y0) / region_.height());
         }
+        for (CellRow& row : rows) maps_.give_back(row);
         if (plan_.filters) filter(p);  // after a stop, too: what is lit may be all there is to show
     }
 
@@ -137,36 +174,78 @@ class BlockCache final : public Integrator {
                + static_cast<std::size_t>(x - region_.x0);
     }
 
-    /// The row of cells from y on, one cell wider than the region where the frame is; empty outside of it.
-    CellRow make_row(int y, Preparation& p) const {
+    /// The row of cells from y on, two cells wider than the region where the frame is; empty outside of it.
+    CellRow traced_row(int y, Preparation& p) const {
         CellRow row;
-        row.rect = intersection({region_.x0 - cell_pixels, y, region_.x1 + cell_pixels, y + cell_pixels},
-                                {0, 0, view_.width, view_.height});
+        row.rect =
+            intersection({region_.x0 - 2 * cell_pixels, y, region_.x1 + 2 * cell_pixels, y + cell_pixels},
+                         {0, 0, view_.width, view_.height});
         if (row.rect.y0 >= row.rect.y1) return row;
         for (std::uint32_t s = p.first_sample; s < p.first_sample + p.sample_count; ++s)
             row.samples.push_back(std::make_unique<GBuffer>(transport_, view_, row.rect, s, max_depth_,
                                                             surface_layers_, p.threads, p.rays));
-        row.maps.resize(static_cast<std::size_t>((row.rect.width() + cell_pixels - 1) / cell_pixels));
+        row.records.resize(static_cast<std::size_t>((row.rect.width() + cell_pixels - 1) / cell_pixels));
         BlockSettings blocks = plan_.blocks;
         blocks.samples_per_pixel = static_cast<int>(p.sample_count);
         const MapSource source{map_source_, split_, grid_, environment_};
         std::mutex mutex;
-        parallel_for(p.threads, row.maps.size(), [&](std::size_t i) {
+        parallel_for(p.threads, row.cells(), [&](std::size_t i) {
             if (p.stop()) return;
             RayCounts rays;
             CacheCounts counts;
             {
                 const StepTimer timer(counts, CacheStep::create);
                 const PixelRect cell = cell_of(row, i);
-                row.maps[i] = make_maps(source, cell, points_of(row, cell), blocks, rays);
+                row.records[i] = make_records(source, cell, points_of(row, cell), blocks, rays);
             }
-            for (const BlockMap& map : row.maps[i]) counts.record_bytes += map.bytes();
-            counts.records = row.maps[i].size();
+            for (const MapRecord& record : row.records[i]) counts.record_bytes += record.bytes();
+            counts.records = row.records[i].size();
             const std::lock_guard lock(mutex);
             p.rays.add(rays);
             p.counts.add(counts);
         });
         return row;
+    }
+
+    /// Makes the maps of rows[at] from the records of its cells and of those around them.
+    void fill_row(RowWindow& rows, std::size_t at, Preparation& p) {
+        CellRow& row = rows[at];
+        row.maps.resize(row.cells());
+        std::mutex mutex;
+        parallel_for(p.threads, row.cells(), [&](std::size_t i) {
+            if (p.stop()) return;
+            CacheCounts counts;
+            {
+                const StepTimer timer(counts, CacheStep::reproject);
+                const std::vector<const MapRecord*> around =
+                    plan_.reprojected > 0 ? near_records(rows, at, i) : std::vector<const MapRecord*>{};
+                MapFill fill(grid_, environment_);
+                for (const MapRecord& record : row.records[i]) {
+                    if (!record.has_map) continue;
+                    const auto others = records_around(record, around, plan_.reprojected);
+                    fill.run(record, others, map_source_.reflects(), row.maps[i].emplace_back(maps_.take()));
+                    counts.reprojections += others.size();
+                }
+            }
+            const std::lock_guard lock(mutex);
+            p.counts.add(counts);
+        });
+    }
+
+    static std::vector<const MapRecord*> near_records(const RowWindow& rows, std::size_t at, std::size_t i) {
+        std::vector<const MapRecord*> records;
+        for_cells_around(rows, at, i, [&](const CellRow& row, std::size_t j) {
+            for (const MapRecord& record : row.records[j]) records.push_back(&record);
+        });
+        return records;
+    }
+
+    /// Calls use(row, cell) for a cell and the up to eight around it.
+    template <typename Use>
+    static void for_cells_around(const RowWindow& rows, std::size_t at, std::size_t i, const Use& use) {
+        for (std::size_t r = at - std::min<std::size_t>(at, 1); r <= at + 1 && r < rows.size(); ++r)
+            for (std::size_t j = i - std::min<std::size_t>(i, 1); j <= i + 1 && j < rows[r].cells(); ++j)
+                use(rows[r], j);
     }
 
     static PixelRect cell_of(const CellRow& row, std::size_t i) {
@@ -184,16 +263,17 @@ class BlockCache final : public Integrator {
         return points;
     }
 
-    void light_row(const CellRow& above, const CellRow& here, const CellRow& below, Preparation& p) {
+    void light_row(const RowWindow& rows, Preparation& p) {
+        const CellRow& here = rows[lit_row];
         std::mutex mutex;
-        parallel_for(p.threads, here.maps.size(), [&](std::size_t i) {
+        parallel_for(p.threads, here.cells(), [&](std::size_t i) {
             const PixelRect cell = intersection(cell_of(here, i), region_);
             if (cell.x0 >= cell.x1 || p.stop()) return;
             std::vector<const BlockMap*> candidates;
-            for (const CellRow* row : {&above, &here, &below})
-                for (std::size_t j = i - std::min<std::size_t>(i, 1); j <= i + 1 && j < row->maps.size(); ++j)
-                    for (const BlockMap& map : row->maps[j])
-                        if (touches(map, cell)) candidates.push_back(&map);
+            for_cells_around(rows, lit_row, i, [&](const CellRow& row, std::size_t j) {
+                for (const BlockMap& map : row.maps[j])
+                    if (touches(map, cell)) candidates.push_back(&map);
+            });
             Workspace workspace{{grid_, points_, environment_, plan_.exact}, ResidualDistribution(grid_), {}};
             RayCounts rays;
             CacheCounts counts;
@@ -363,6 +443,7 @@ class BlockCache final : public Integrator {
     DirectionGrid grid_;
     QuadraturePoints points_;
     DimEnvironment environment_;
+    MapStore maps_;
 
     PixelRect region_;  // that the pass computes
     std::vector<PixelSums> pixels_;

@@ -11,6 +11,7 @@ namespace relumine {
 struct CachePlan {
     BlockSettings blocks;
     RayBudget rays;
+    std::size_t reprojected = 0;  // records around that a map is filled with, beside its own
     bool exact = false, filters = false;
     bool filters_bright = false;  // what light samples find, too
 };
