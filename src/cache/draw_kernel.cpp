@@ -205,6 +205,7 @@ HWY_NOINLINE void paint_missed(const BitRect rect, const TexelRect part, const R
         for (std::size_t y = 0; y < height; ++y, position += down.step(), at += mask_side) {
             const std::size_t texel = position >> 16;
             const std::uint64_t fresh = missed.of_row[texel] & open_word[2 * y];
+            if (fresh == 0) continue;  // hit, or hidden: so it is over long stretches
             const auto fresh_lanes = lanes_of_bits(fresh >> block.begin % 64);
             replace(fresh_lanes, stretch(texels + texel * side), radiance + at);
             if constexpr (with_direct)
