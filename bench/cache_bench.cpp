@@ -143,7 +143,7 @@ void tabulate_bsdf(benchmark::State& state) {
     bsdf.ggx.alpha = static_cast<float>(state.range(0)) / 100;
     BsdfTable table;
     for (auto _ : state) {
-        tabulate(bsdf, table);
+        tabulate(bsdf, all_cells, table);
         benchmark::DoNotOptimize(table.r.data());
     }
     state.counters["fine"] = static_cast<double>(table.fine_cells.size());
@@ -155,7 +155,7 @@ void shade_square(benchmark::State& state) {
     incident.clear(false);
     reproject(stage().record, stage().receiver, incident);
     BsdfTable table;
-    tabulate(stage().bsdf, table);
+    tabulate(stage().bsdf, all_cells, table);
     for (auto _ : state) benchmark::DoNotOptimize(shade(incident, table));
 }
 BENCHMARK(shade_square);

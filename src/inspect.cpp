@@ -146,8 +146,9 @@ class Inspector {
     }
 
     void reflect() {
-        tabulate(*receiver_bsdf(vertex(), p_.receiver.frame), p_.bsdf);
-        p_.estimate = outgoing(shade(p_.filled, p_.bsdf));
+        const ReceiverBsdf bsdf = *receiver_bsdf(vertex(), p_.receiver.frame);
+        p_.estimate = outgoing(shade(p_.filled, bsdf, p_.bsdf));
+        tabulate(bsdf, all_cells, p_.bsdf);
         p_.from_truth = outgoing(shade(p_.truth, p_.bsdf));
         const Spectrum throughput = p_.pixel.point->path.throughput;
         p_.error_of_covered =

@@ -2,7 +2,9 @@
 // The kernels that decode, sum and weigh radiance, and find where a table of weights is too coarse.
 #include "cache/cell_sum_kernel.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <numeric>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cache/cell_sum_kernel.cpp"
@@ -29,15 +31,20 @@ void sum_all(std::span<const std::uint32_t> radiance, const Mask& lit, const Cel
 }
 
 /// Column by column, so that the sums do not wait for each other.
-float mean(std::span<const float> values) {
+float mean(std::span<const float> values, const CellMask& cells) {
     const F f;
     VF sum = hn::Zero(f);
     for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
         VF column = hn::Zero(f);
-        for (std::size_t y = 0; y < side; ++y) column = hn::Add(column, hn::LoadU(f, &values[y * side + x]));
+        for (std::size_t y = 0; y < side; ++y)
+            column = hn::Add(
+                column, hn::MaskedLoad(hn::RebindMask(f, lanes_of(cells[y], x)), f, &values[y * side + x]));
         sum = hn::Add(sum, column);
     }
-    return hn::GetLane(hn::SumOfLanes(f, sum)) / static_cast<float>(values.size());
+    const int count = std::accumulate(cells.begin(), cells.end(), 0, [](int total, std::uint64_t row) {
+        return total + std::popcount(row);
+    });
+    return hn::GetLane(hn::SumOfLanes(f, sum)) / static_cast<float>(std::max(count, 1));
 }
 
 /// |Second differences| along both axes.
@@ -50,13 +57,15 @@ HWY_INLINE VF curvature(const float* at, VF value) {
     return hn::Add(bend(1), bend(side));
 }
 
-void find_curved(std::span<const float> values, float share, std::vector<std::uint32_t>& found) {
+void find_curved(std::span<const float> values, const CellMask& cells, float share,
+                 std::vector<std::uint32_t>& found) {
     const F f;
-    const VF limit = hn::Set(f, share), noticeable = hn::Set(f, mean(values));
+    const VF limit = hn::Set(f, share), noticeable = hn::Set(f, mean(values, cells));
     constexpr std::uint64_t inner = ~std::uint64_t{0} >> 2 << 1;  // neither the first nor the last column
     for (std::size_t y = 1; y + 1 < side; ++y) {
         std::uint64_t row = 0;
         for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
+            if (!any_in_lanes(cells[y], x)) continue;
             const float* at = &values[y * side + x];
             const VF value = hn::LoadU(f, at);
             const auto curved = hn::Gt(curvature(at, value), hn::Mul(limit, hn::Add(value, noticeable)));
@@ -64,7 +73,7 @@ void find_curved(std::span<const float> values, float share, std::vector<std::ui
             hn::StoreMaskBits(f, curved, reinterpret_cast<std::uint8_t*>(&bits));
             row |= bits << x;
         }
-        for (row &= inner; row != 0; row &= row - 1)
+        for (row &= inner & cells[y]; row != 0; row &= row - 1)
             found.push_back(static_cast<std::uint32_t>(y * side)
                             + static_cast<std::uint32_t>(std::countr_zero(row)));
     }
@@ -87,8 +96,9 @@ Spectrum sum_cells(std::span<const std::uint32_t> radiance, const Mask& lit, con
     return sum;
 }
 
-void find_curved_cells(std::span<const float> values, float share, std::vector<std::uint32_t>& found) {
-    HWY_DYNAMIC_DISPATCH(find_curved)(values, share, found);
+void find_curved_cells(std::span<const float> values, const CellMask& cells, float share,
+                       std::vector<std::uint32_t>& found) {
+    HWY_DYNAMIC_DISPATCH(find_curved)(values, cells, share, found);
 }
 
 }  // namespace relumine

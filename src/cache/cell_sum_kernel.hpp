@@ -19,8 +19,10 @@ struct CellWeights {
 [[nodiscard]] Spectrum sum_cells(std::span<const std::uint32_t> radiance, const Mask& lit,
                                  const CellWeights& weights, std::span<float> products);
 
-/// Appends the cells, but for those at the border, where |second differences| of `values` along both axes
-/// exceed `share` × (value + mean of all values), in ascending order. `values`: (mask_side/2)².
-void find_curved_cells(std::span<const float> values, float share, std::vector<std::uint32_t>& found);
+/// Appends those of `cells`, but for those at the square's border, where |second differences| of `values`
+/// along both axes exceed `share` × (value + mean of `cells`), in ascending order. `values`: (mask_side/2)²;
+/// what is neither in `cells` nor beside one of them does not matter.
+void find_curved_cells(std::span<const float> values, const CellMask& cells, float share,
+                       std::vector<std::uint32_t>& found);
 
 }  // namespace relumine

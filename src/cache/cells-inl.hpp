@@ -38,19 +38,18 @@ HWY_INLINE Colors multiply(const Colors& a, const Colors& b) {
     return {hn::Mul(a.r, b.r), hn::Mul(a.g, b.g), hn::Mul(a.b, b.b)};
 }
 
-HWY_INLINE Colors unpack(VU packed) {
+/// `sum` and radiance as pack_rgbe packs it: 0, whose unit is some finite number here, or with an exponent of
+/// least_rgbe_exponent or more.
+HWY_INLINE Colors add_unpacked(VU packed, const Colors& sum) {
     const U u;
     const F f;
-    const VU exponent = hn::ShiftRight<24>(packed);
-    const auto seen =
-        hn::RebindMask(u, hn::Gt(hn::BitCast(I(), exponent), hn::Set(I(), least_rgbe_exponent - 1)));
-    const VU bits = hn::ShiftLeft<23>(hn::Sub(exponent, hn::Set(u, 9)));
-    const VF unit = hn::BitCast(f, hn::IfThenElseZero(seen, bits));
+    const VF unit = hn::BitCast(f, hn::ShiftLeft<23>(hn::Sub(hn::ShiftRight<24>(packed), hn::Set(u, 9))));
     const VU byte = hn::Set(u, 255);
-    const auto channel = [&](VU v) {
-        return hn::Mul(hn::ConvertTo(f, hn::BitCast(I(), hn::And(v, byte))), unit);
+    const auto add = [&](VU v, VF to) {
+        return hn::MulAdd(hn::ConvertTo(f, hn::BitCast(I(), hn::And(v, byte))), unit, to);
     };
-    return {channel(packed), channel(hn::ShiftRight<8>(packed)), channel(hn::ShiftRight<16>(packed))};
+    return {add(packed, sum.r), add(hn::ShiftRight<8>(packed), sum.g),
+            add(hn::ShiftRight<16>(packed), sum.b)};
 }
 
 /// Sums of neighbouring lanes: half of them from `low`, half from `high`.
@@ -63,12 +62,18 @@ HWY_INLINE VF sum_pairs(VF low, VF high) {
 #endif
 }
 
-/// The bits of Lanes columns; `column` is a multiple of the lanes.
-HWY_INLINE hn::Mask<U> lanes_of(const MaskRow& row, std::size_t column) {
+/// The bits of Lanes columns of a row of bits or cells; `column` is a multiple of the lanes.
+template <typename Row>
+HWY_INLINE hn::Mask<U> lanes_of(const Row& row, std::size_t column) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(&row) + column / 8;
     if constexpr (hn::MaxLanes(U()) >= 8) return hn::LoadMaskBits(U(), bytes);
     const std::uint64_t bits = *bytes >> column % 8;
     return hn::LoadMaskBits(U(), reinterpret_cast<const std::uint8_t*>(&bits));
+}
+
+/// Whether a row of cells has any of Lanes columns.
+HWY_INLINE bool any_in_lanes(std::uint64_t cells, std::size_t column) {
+    return (cells >> column & ((std::uint64_t{1} << hn::Lanes(U())) - 1)) != 0;
 }
 
 /// Lanes cells: the bits of two rows, black where they are not lit.
@@ -84,8 +89,9 @@ struct Cells {
     }
 
     [[nodiscard]] HWY_INLINE Colors sums() const {
-        const Colors low = add(unpack(above_low), unpack(below_low)),
-                     high = add(unpack(above_high), unpack(below_high));
+        const Colors black{hn::Zero(F()), hn::Zero(F()), hn::Zero(F())};
+        const Colors low = add_unpacked(above_low, add_unpacked(below_low, black)),
+                     high = add_unpacked(above_high, add_unpacked(below_high, black));
         return {sum_pairs(low.r, high.r), sum_pairs(low.g, high.g), sum_pairs(low.b, high.b)};
     }
 };

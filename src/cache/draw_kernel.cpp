@@ -30,11 +30,13 @@ constexpr std::uint32_t window_rows = 8;
 using R = hn::CappedTag<std::uint64_t, 8>;
 using VR = hn::Vec<R>;
 
-/// Rows of ones between rows of zeros: from where a window is read decides which of its rows are ones.
+/// So many rows of ones between rows of zeros: from where a window is read decides which of its rows are
+/// ones.
 struct alignas(64) RowsOfOnes {
-    std::array<MaskRow, 2 * window_rows> from{}, below{};
+    std::array<std::array<MaskRow, 2 * window_rows>, window_rows + 1> number{};
     constexpr RowsOfOnes() {
-        for (std::size_t i = 0; i < window_rows; ++i) from[window_rows + i] = below[i] = ~MaskRow{};
+        for (std::size_t n = 0; n <= window_rows; ++n)
+            for (std::size_t i = 0; i < n; ++i) number[n][window_rows + i] = ~MaskRow{};
     }
 };
 constexpr RowsOfOnes rows_of_ones;
@@ -55,13 +57,11 @@ HWY_INLINE void for_rows(const BitRect& rect, Mask& mask, const Change& change) 
     std::uint32_t y = rect.y0;
     do {
         const std::uint32_t first = std::min(y & ~3u, mask_side - window_rows);
-        const std::uint64_t* from = &rows_of_ones.from[window_rows - (y - first)].low;
-        const std::uint64_t* below =
-            &rows_of_ones.below[window_rows - std::min(rect.y1 - first, window_rows)].low;
+        const std::uint32_t before = y - first, count = std::min(rect.y1 - first, window_rows) - before;
+        const std::uint64_t* ones = &rows_of_ones.number[count][window_rows - before].low;
         std::uint64_t* words = &mask.rows[first].low;
         for (std::size_t i = 0; i < 2 * window_rows; i += hn::Lanes(R()))
-            change(words + i,
-                   hn::And(repeated(span, i), hn::And(hn::LoadU(R(), from + i), hn::LoadU(R(), below + i))));
+            change(words + i, hn::And(repeated(span, i), hn::LoadU(R(), ones + i)));
         y = first + window_rows;
     } while (y < rect.y1);
 }
@@ -118,6 +118,12 @@ struct Stretch {
     }
 };
 
+/// Replaces some lanes of memory, `out` a multiple of a vector. Masked stores take tens of cycles on some
+/// machines of 2020 to 2023; nobody else writes to the canvas.
+HWY_INLINE void replace(hn::Mask<U> lanes, VU values, std::uint32_t* out) {
+    hn::StoreU(hn::IfThenElse(lanes, values, hn::LoadU(U(), out)), U(), out);
+}
+
 /// A surfel's texels over its rectangle, where bits are open. `rect` and `part` are copies: bytes might be
 /// any memory's, and would be read again after every store.
 HWY_NOINLINE void paint(const BitRect rect, const TexelRect part, std::span<const std::uint32_t> texture,
@@ -133,8 +139,7 @@ HWY_NOINLINE void paint(const BitRect rect, const TexelRect part, std::span<cons
         std::uint32_t* out = &canvas[rect.y0 * std::size_t{mask_side} + block.begin];
         std::size_t texel = down.step() / 2;  // of TexelSteps
         for (std::size_t y = 0; y < height; ++y, texel += down.step(), ++row, out += mask_side)
-            hn::BlendedStore(stretch(texels + (texel >> 16) * side), hn::And(stretch.inside, block.of(*row)),
-                             U(), out);
+            replace(hn::And(stretch.inside, block.of(*row)), stretch(texels + (texel >> 16) * side), out);
     }
 }
 
@@ -150,25 +155,32 @@ void paint_all(std::span<const BitRect> masks, std::span<const TexelRect> texels
     }
 }
 
-/// The texels of a square of eight columns that were missed, as bits from the surfel's first column on.
-struct MissedTexels {
-    const std::uint8_t* row;  // of the surfel's first row
-    std::size_t pitch;        // bytes from one row to the next
-    std::uint32_t shift;
+/// Lanes as bits of a word.
+HWY_INLINE std::uint64_t bits_of(hn::Mask<U> lanes) {
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(U(), lanes, reinterpret_cast<std::uint8_t*>(&bits));
+    return bits;
+}
+HWY_INLINE hn::Mask<U> lanes_of_bits(std::uint64_t bits) {
+    return hn::LoadMaskBits(U(), reinterpret_cast<const std::uint8_t*>(&bits));
+}
 
-    HWY_INLINE MissedTexels(const TexelRect& part, std::span<const std::uint8_t> missed, std::size_t side)
-        : row(&missed[(part.v * side + part.u) / 8]), pitch(side / 8), shift(part.u % 8) {}
-    [[nodiscard]] HWY_INLINE VU operator()(std::size_t texel) const {
-        return hn::Set(U(), static_cast<std::uint32_t>(row[texel * pitch] >> shift));
+/// For each row of a surfel's texels the bits of a block that show one that was missed, at the block's place
+/// in its word.
+struct MissedBits {
+    std::array<std::uint64_t, max_surfel_side> of_row;
+
+    HWY_INLINE MissedBits(const TexelRect& part, std::span<const std::uint8_t> missed, std::size_t side,
+                          const Stretch& stretch, const Block& block) {
+        const std::uint8_t* byte = &missed[(part.v * side + part.u) / 8];
+        const VU bit_of_texel = hn::Shl(hn::Set(U(), 1), stretch.texel);
+        for (std::size_t v = 0; v < part.height; ++v, byte += side / 8) {
+            const VU from_first_column = hn::Set(U(), static_cast<std::uint32_t>(*byte >> part.u % 8));
+            of_row[v] = bits_of(hn::And(stretch.inside, hn::TestBit(from_first_column, bit_of_texel)))
+                        << block.begin % 64;
+        }
     }
 };
-
-HWY_INLINE void add_lanes(hn::Mask<U> lanes, std::uint32_t column, MaskRow& row) {
-    using Bits = std::conditional_t<(hn::MaxLanes(U()) > 8), std::uint16_t, std::uint8_t>;
-    Bits bits;  // no wider than what is stored, or the load would have to wait for it
-    hn::StoreMaskBits(U(), lanes, reinterpret_cast<std::uint8_t*>(&bits));
-    (column < 64 ? row.low : row.high) |= std::uint64_t{bits} << column % 64;
-}
 
 /// As paint, but for texels that were hit. `drawn`: bits are added to it.
 template <bool with_direct>
@@ -182,23 +194,23 @@ HWY_NOINLINE void paint_missed(const BitRect rect, const TexelRect part, const R
                                                                       with_direct ? &texture.direct[first]
                                                                                   : nullptr;
     std::uint32_t *const radiance = canvas.radiance.data(), *const direct = canvas.direct.data();
-    const MissedTexels missed(part, texture.missed, side);
     const std::size_t height = static_cast<std::size_t>(rect.height());
     for (Block block{rect.x0 / lanes * lanes}; block.begin < rect.x1; block.begin += lanes) {
         const Stretch stretch(across, rect, block);
-        const VU bit_of_texel = hn::Shl(hn::Set(U(), 1), stretch.texel);
-        const MaskRow* row = &canvas.open.rows[rect.y0];
-        MaskRow* drawn_row = &drawn.rows[rect.y0];
+        const MissedBits missed(part, texture.missed, side, stretch, block);
+        const std::uint64_t* open_word = &canvas.open.rows[rect.y0].low + block.begin / 64;
+        std::uint64_t* drawn_word = &drawn.rows[rect.y0].low + block.begin / 64;
         std::size_t at = rect.y0 * std::size_t{mask_side} + block.begin;
         std::size_t position = down.step() / 2;  // of TexelSteps
         for (std::size_t y = 0; y < height; ++y, position += down.step(), at += mask_side) {
             const std::size_t texel = position >> 16;
-            const auto fresh =
-                hn::And(hn::And(stretch.inside, block.of(row[y])), hn::TestBit(missed(texel), bit_of_texel));
-            hn::BlendedStore(stretch(texels + texel * side), fresh, U(), radiance + at);
+            const std::uint64_t fresh = missed.of_row[texel] & open_word[2 * y];
+            if (fresh == 0) continue;  // hit, or hidden: so it is over long stretches
+            const auto fresh_lanes = lanes_of_bits(fresh >> block.begin % 64);
+            replace(fresh_lanes, stretch(texels + texel * side), radiance + at);
             if constexpr (with_direct)
-                hn::BlendedStore(stretch(direct_texels + texel * side), fresh, U(), direct + at);
-            add_lanes(fresh, block.begin, drawn_row[y]);
+                replace(fresh_lanes, stretch(direct_texels + texel * side), direct + at);
+            drawn_word[2 * y] |= fresh;
         }
     }
 }

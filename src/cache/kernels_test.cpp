@@ -63,13 +63,14 @@ struct Corner {
     float x, y, cosine;
 };
 
-/// The kernel's operations one by one; hemisphere_to_square up to rounding.
+/// The kernel's operations one by one; hemisphere_to_square up to its shorter polynomial.
 Corner project_corner(Vec3 w) {
     const float length = std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z), ax = std::abs(w.x), ay = std::abs(w.y);
     const float major = std::max(std::max(ax, ay), length * 1e-12f);
     const float inverse = 1 / std::max(length * major, 1e-37f), cosine = w.z * (major * inverse);
     const float r = std::sqrt(std::max(0.0f, 1 - cosine));
-    const float across = r * octant(std::min(std::min(ax, ay) * (length * inverse), 1.0f));
+    const float across =
+        r * octant(std::min(std::min(ax, ay) * (length * inverse), 1.0f), short_octant_polynomial);
     const auto bits = [](float magnitude, float sign) { return 64 * std::copysign(magnitude, sign) + 64; };
     return {bits(ax >= ay ? r : across, w.x), bits(ax >= ay ? across : r, w.y), cosine};
 }

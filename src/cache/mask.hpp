@@ -112,4 +112,41 @@ struct alignas(64) Mask {
     }
 };
 
+/// A bit for each cell of 2 × 2 bits, row by row.
+using CellMask = std::array<std::uint64_t, mask_side / 2>;
+
+inline constexpr CellMask all_cells = [] {
+    CellMask cells{};
+    cells.fill(~std::uint64_t{0});
+    return cells;
+}();
+
+/// The cells that have a bit of the mask.
+inline CellMask cells_of(const Mask& mask) {
+    const auto either_of_pairs = [](std::uint64_t bits) {
+        bits = (bits | bits >> 1) & 0x5555555555555555;
+        bits = (bits | bits >> 1) & 0x3333333333333333;
+        bits = (bits | bits >> 2) & 0x0f0f0f0f0f0f0f0f;
+        bits = (bits | bits >> 4) & 0x00ff00ff00ff00ff;
+        bits = (bits | bits >> 8) & 0x0000ffff0000ffff;
+        return (bits | bits >> 16) & 0x00000000ffffffff;
+    };
+    CellMask cells;
+    for (std::size_t y = 0; y < cells.size(); ++y) {
+        const MaskRow both = mask.rows[2 * y] | mask.rows[2 * y + 1];
+        cells[y] = either_of_pairs(both.low) | either_of_pairs(both.high) << 32;
+    }
+    return cells;
+}
+
+/// These cells and the four beside each.
+inline CellMask with_neighbours(const CellMask& cells) {
+    CellMask wide;
+    for (std::size_t y = 0; y < cells.size(); ++y) {
+        const std::uint64_t above = y > 0 ? cells[y - 1] : 0, below = y + 1 < cells.size() ? cells[y + 1] : 0;
+        wide[y] = cells[y] | cells[y] << 1 | cells[y] >> 1 | above | below;
+    }
+    return wide;
+}
+
 }  // namespace relumine

@@ -36,5 +36,26 @@ TEST(Mask, FillsRectangles) {
     EXPECT_EQ((~mask).count() + mask.count(), mask_bits);
 }
 
+TEST(Mask, CellsAreThoseOfTwoByTwoBits) {
+    Mask mask;
+    mask.fill({5, 6, 9, 10});
+    mask.fill({60, 69, 100, 103});
+    mask.fill({127, 128, 127, 128});
+    const CellMask cells = cells_of(mask), wide = with_neighbours(cells);
+    const auto has = [](const CellMask& c, int x, int y) {
+        return x >= 0 && y >= 0 && x < 64 && y < 64 && (c[static_cast<std::size_t>(y)] >> x & 1) != 0;
+    };
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const bool any = mask.test(2 * x, 2 * y) || mask.test(2 * x + 1, 2 * y)
+                             || mask.test(2 * x, 2 * y + 1) || mask.test(2 * x + 1, 2 * y + 1);
+            ASSERT_EQ(has(cells, x, y), any) << x << " " << y;
+            ASSERT_EQ(has(wide, x, y), any || has(cells, x - 1, y) || has(cells, x + 1, y)
+                                           || has(cells, x, y - 1) || has(cells, x, y + 1))
+                << x << " " << y;
+        }
+    EXPECT_EQ(cells_of(~Mask{}), all_cells);
+}
+
 }  // namespace
 }  // namespace relumine

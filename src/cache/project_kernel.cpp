@@ -40,9 +40,9 @@ struct SquarePoint {
 HWY_INLINE VF octant_of(VF x) {
     const F f;
     const VF x2 = hn::Mul(x, x);
-    VF sum = hn::Set(f, octant_polynomial.back());
-    for (std::size_t i = octant_polynomial.size() - 1; i-- > 0;)
-        sum = multiply_add(sum, x2, hn::Set(f, octant_polynomial[i]));
+    VF sum = hn::Set(f, short_octant_polynomial.back());
+    for (std::size_t i = short_octant_polynomial.size() - 1; i-- > 0;)
+        sum = multiply_add(sum, x2, hn::Set(f, short_octant_polynomial[i]));
     return hn::Mul(sum, x);
 }
 

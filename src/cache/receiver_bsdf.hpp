@@ -40,12 +40,15 @@ struct SpectrumArrays {
 /// eval(const Bsdf&, …): 2e-4, from the half vectors of sharp lobes.
 void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out);
 
-/// Σ over cells of 2 × 2 bits of f·|cos θ| at the cell's centre × Σ over its lit bits of radiance. What is
-/// black costs nothing. `radiance`: mask_side², RGBE; `centers`: (mask_side/2)². Where `products` is not
-/// empty it receives the luminance of each cell's term.
-[[nodiscard]] Spectrum reflect_cells(const ReceiverBsdf& bsdf, const Directions& centers,
-                                     std::span<const std::uint32_t> radiance, const Mask& lit,
-                                     std::span<float> products);
+/// The same at the centres of some cells of 2 × 2 bits, and wherever it costs nothing. `centers`, `out`:
+/// (mask_side/2)².
+void evaluate_cells(const ReceiverBsdf& bsdf, const Directions& centers, const CellMask& cells,
+                    const SpectrumArrays& out);
+
+/// Σ over tiles of 4 × 4 bits of f·|cos θ| for the tile's direction × Σ over its lit bits of radiance. What
+/// is black costs nothing. `radiance`: mask_side², RGBE; `directions`: (mask_side/4)².
+[[nodiscard]] Spectrum reflect_tiles(const ReceiverBsdf& bsdf, const Directions& directions,
+                                     std::span<const std::uint32_t> radiance, const Mask& lit);
 
 /// Directions in runs of 16 lanes: run i is [16 i, 16 i + 16), one direction for each of 16 texels.
 struct DirectionRuns {

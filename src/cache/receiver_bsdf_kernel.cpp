@@ -42,9 +42,9 @@ HWY_INLINE Spectrums schlick(Spectrum f0, Spectrum f90, VF grazing) {
 /// What does not depend on w_in.
 struct Prepared {
     const ReceiverBsdf& b;
-    float a2, lambda_out, scale;  // of the specular lobe: D·G without what follows from w_in
-    float flat, steep;            // of grazing_albedo
-    Spectrum diffuse;             // times what the coat lets pass to w_out
+    float a2, lambda_out, scale;       // of the specular lobe: D·G without what follows from w_in
+    float flat, steep, inverse_steep;  // of grazing_albedo
+    Spectrum diffuse;                  // times what the coat lets pass to w_out
 
     explicit Prepared(const ReceiverBsdf& bsdf) : b(bsdf), a2(sqr(bsdf.ggx.alpha)) {
         const Vec3 o = b.w_out.v;
@@ -52,6 +52,7 @@ struct Prepared {
         scale = a2 * inv_pi / (4 * o.z);
         flat = std::max(1 - 6 * b.ggx.alpha, 0.0f);
         steep = 20 * a2 / (b.ggx.alpha + 0.02f);
+        inverse_steep = 1 / steep;
         diffuse = b.diffuse;
         if (b.coated)
             diffuse *=
@@ -93,9 +94,11 @@ HWY_INLINE Spectrums reflect(const Prepared& p, const Vec3s& w) {
     if (b.coated) {
         const VF beside = hn::Min(hn::Max(hn::Sub(constant(1), w.z), constant(1e-3f)), constant(1));
         const VF beside2 = squared(beside);
-        const VF part = hn::Min(hn::Div(hn::Mul(squared(beside2), beside),
-                                        hn::MulAdd(constant(p.steep), beside2, constant(p.flat))),
-                                constant(1));
+        // Rough coats are steep alone: no division.
+        const VF whole = p.flat == 0 ? hn::Mul(hn::Mul(beside2, beside), constant(p.inverse_steep))
+                                     : hn::Div(hn::Mul(squared(beside2), beside),
+                                               hn::MulAdd(constant(p.steep), beside2, constant(p.flat)));
+        const VF part = hn::Min(whole, constant(1));
         const Spectrums coat = schlick(b.coat_f0, b.coat_f90, part);
         const VF most = hn::Max(coat.r, hn::Max(coat.g, coat.b));
         base = hn::Mul(base, hn::Max(hn::Sub(constant(1), most), constant(0)));
@@ -138,17 +141,60 @@ void evaluate_all(const ReceiverBsdf& bsdf, const Directions& w_in, const Spectr
     }
 }
 
-void reflect_all_cells(const ReceiverBsdf& bsdf, const Directions& centers,
-                       std::span<const std::uint32_t> radiance, const Mask& lit, std::span<float> products,
-                       Spectrum& out) {
+void evaluate_some_cells(const ReceiverBsdf& bsdf, const Directions& centers, const CellMask& wanted,
+                         const SpectrumArrays& out) {
     const F f;
     const Prepared prepared(bsdf);
-    out = cells::weighted_sum(radiance, lit, products, [&](std::size_t cell) {
-        const Spectrums s = above_horizon(
-            prepared,
-            {hn::LoadU(f, &centers.x[cell]), hn::LoadU(f, &centers.y[cell]), hn::LoadU(f, &centers.z[cell])});
-        return cells::Colors{s.r, s.g, s.b};
-    });
+    constexpr std::size_t side = mask_side / 2;
+    for (std::size_t y = 0; y < side; ++y)
+        for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
+            if (!cells::any_in_lanes(wanted[y], x)) continue;
+            const std::size_t at = y * side + x;
+            const Spectrums s = above_horizon(
+                prepared,
+                {hn::LoadU(f, &centers.x[at]), hn::LoadU(f, &centers.y[at]), hn::LoadU(f, &centers.z[at])});
+            hn::StoreU(s.r, f, &out.r[at]);
+            hn::StoreU(s.g, f, &out.g[at]);
+            hn::StoreU(s.b, f, &out.b[at]);
+        }
+}
+
+/// Σ over each of Lanes tiles of its lit bits' radiance.
+HWY_INLINE cells::Colors tile_sums(std::span<const std::uint32_t> radiance, const Mask& lit, std::size_t y,
+                                   std::size_t x) {
+    const auto of_columns = [&](std::size_t column) {
+        return cells::add(cells::Cells(radiance, lit, 4 * y, column).sums(),
+                          cells::Cells(radiance, lit, 4 * y + 2, column).sums());
+    };
+    const cells::Colors low = of_columns(4 * x), high = of_columns(4 * x + 2 * hn::Lanes(F()));
+    return {cells::sum_pairs(low.r, high.r), cells::sum_pairs(low.g, high.g),
+            cells::sum_pairs(low.b, high.b)};
+}
+
+void reflect_all_tiles(const ReceiverBsdf& bsdf, const Directions& directions,
+                       std::span<const std::uint32_t> radiance, const Mask& lit, Spectrum& out) {
+    const F f;
+    const Prepared prepared(bsdf);
+    constexpr std::size_t side = mask_side / 4;
+    const int half_width = static_cast<int>(2 * hn::Lanes(f));  // bits
+    Spectrums sum{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
+    for (std::size_t y = 0; y < side; ++y) {
+        const MaskRow* rows = &lit.rows[4 * y];
+        const MaskRow any = (rows[0] | rows[1]) | (rows[2] | rows[3]);
+        for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
+            const int column = static_cast<int>(4 * x);
+            if ((any.bits(column, half_width) | any.bits(column + half_width, half_width)) == 0) continue;
+            const std::size_t at = y * side + x;
+            const Spectrums s =
+                above_horizon(prepared, {hn::LoadU(f, &directions.x[at]), hn::LoadU(f, &directions.y[at]),
+                                         hn::LoadU(f, &directions.z[at])});
+            const cells::Colors light = tile_sums(radiance, lit, y, x);
+            sum = {hn::MulAdd(light.r, s.r, sum.r), hn::MulAdd(light.g, s.g, sum.g),
+                   hn::MulAdd(light.b, s.b, sum.b)};
+        }
+    }
+    out = {hn::GetLane(hn::SumOfLanes(f, sum.r)), hn::GetLane(hn::SumOfLanes(f, sum.g)),
+           hn::GetLane(hn::SumOfLanes(f, sum.b))};
 }
 
 /// `radiance`: null for 1 everywhere.
@@ -185,17 +231,23 @@ HWY_AFTER_NAMESPACE();
 namespace relumine {
 
 HWY_EXPORT(evaluate_all);
+HWY_EXPORT(evaluate_some_cells);
 HWY_EXPORT(evaluate_all_tiles);
-HWY_EXPORT(reflect_all_cells);
+HWY_EXPORT(reflect_all_tiles);
 
 void evaluate(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
     HWY_DYNAMIC_DISPATCH(evaluate_all)(bsdf, w_in, out);
 }
 
-Spectrum reflect_cells(const ReceiverBsdf& bsdf, const Directions& centers,
-                       std::span<const std::uint32_t> radiance, const Mask& lit, std::span<float> products) {
+void evaluate_cells(const ReceiverBsdf& bsdf, const Directions& centers, const CellMask& cells,
+                    const SpectrumArrays& out) {
+    HWY_DYNAMIC_DISPATCH(evaluate_some_cells)(bsdf, centers, cells, out);
+}
+
+Spectrum reflect_tiles(const ReceiverBsdf& bsdf, const Directions& directions,
+                       std::span<const std::uint32_t> radiance, const Mask& lit) {
     Spectrum sum;
-    HWY_DYNAMIC_DISPATCH(reflect_all_cells)(bsdf, centers, radiance, lit, products, sum);
+    HWY_DYNAMIC_DISPATCH(reflect_all_tiles)(bsdf, directions, radiance, lit, sum);
     return sum;
 }
 

@@ -65,6 +65,32 @@ TEST(ReceiverBsdfKernel, AgreesWithTheBsdfsOnEveryTarget) {
             .has_value());
 }
 
+TEST(ReceiverBsdfKernel, EvaluatesTheCellsThatAreWantedOnEveryTarget) {
+    constexpr std::size_t side = mask_side / 2, count = side * side;
+    std::vector<float> x(count), y(count), z(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3 w = random_direction(i, 50);
+        x[i] = w.x, y[i] = w.y, z[i] = w.z;
+    }
+    CellMask wanted{};
+    wanted[0] = 1, wanted[7] = std::uint64_t{1} << 40, wanted[30] = 0xff00,
+    wanted[63] = std::uint64_t{1} << 63;
+    const auto bsdf =
+        receiver_bsdf(vertex_of(Lambert{{0.7f, 0.5f, 0.2f}}, {{0, 0, 1}}), frame_around({0, 0, 1}));
+    on_every_target([&] {
+        std::vector<float> r(count), g(count), b(count), red(count, -1), green(count, -1), blue(count, -1);
+        evaluate(*bsdf, {x, y, z}, {r, g, b});
+        evaluate_cells(*bsdf, {x, y, z}, wanted, {red, green, blue});
+        for (std::size_t i = 0; i < count; ++i) {
+            if ((wanted[i / side] >> i % side & 1) == 0) continue;
+            EXPECT_EQ(red[i], r[i]) << i;
+            EXPECT_EQ(green[i], g[i]) << i;
+            EXPECT_EQ(blue[i], b[i]) << i;
+        }
+        EXPECT_EQ(red[20 * side], -1);  // nothing near it is wanted
+    });
+}
+
 /// Quadrature points in the runs that evaluate_tiles reads, for `tiles` tiles.
 DirectionRuns random_runs(std::size_t tiles, std::size_t per_texel) {
     DirectionRuns runs;

@@ -201,12 +201,59 @@ TEST(GapFill, UnderLightThatIsOneEverywhereTheEstimateIsTheAlbedo) {
     EXPECT_EQ(counts.by_purpose[static_cast<std::size_t>(RayPurpose::gap)], rays.size());
     EXPECT_EQ(seen.gaps(), 0);
     BsdfTable table;
-    tabulate(glossy(), table);
+    tabulate(glossy(), all_cells, table);
     Reprojection ones;
     ones.clear(false);
     ones.lit = ~Mask{};
     std::fill_n(ones.radiance.begin(), mask_bits, pack_rgbe(one));
     EXPECT_EQ(shade(seen, table).total, shade(ones, table).total);
+}
+
+void expect_close(Spectrum found, Spectrum expected, float tolerance) {
+    EXPECT_GT(expected.b, 1e-3f);
+    EXPECT_NEAR(found.r, expected.r, tolerance * expected.r);
+    EXPECT_NEAR(found.g, expected.g, tolerance * expected.g);
+    EXPECT_NEAR(found.b, expected.b, tolerance * expected.b);
+}
+
+Reprojection lit_by_one(const BitRect& window) {
+    Reprojection incident;
+    incident.clear(false);
+    std::fill_n(incident.radiance.begin(), mask_bits, pack_rgbe(Spectrum{1}));
+    incident.lit.fill(window);
+    return incident;
+}
+
+constexpr BitRect whole_square{0, 128, 0, 128};
+constexpr std::array<BitRect, 3> windows{whole_square, {30, 61, 0, 128}, {0, 61, 38, 63}};
+
+TEST(Shade, ATableOfWhatIsLitServesAsWellAsAWholeOne) {
+    ReceiverBsdf sharp = glossy();
+    sharp.ggx.alpha = 0.05f;
+    BsdfTable whole, of_lit;
+    tabulate(sharp, all_cells, whole);
+    ASSERT_GT(whole.fine_cells.size(), 20u);
+    for (const BitRect& window : windows) {
+        const Reprojection incident = lit_by_one(window);
+        expect_close(shade(incident, sharp, of_lit).total, shade(incident, whole).total, 2e-3f);
+    }
+    EXPECT_LT(of_lit.fine_cells.size(), whole.fine_cells.size());
+}
+
+TEST(Shade, TilesServeWideLobesAsWellAsCells) {
+    ReceiverBsdf wide = glossy(), diffuse = wide;
+    wide.ggx.alpha = 0.4f;
+    diffuse.coated = diffuse.specular = false;
+    for (const BitRect& window : windows)  // whose edges cut tiles
+        for (const ReceiverBsdf& bsdf : {wide, diffuse}) {
+            const Reprojection incident = lit_by_one(window);
+            BsdfTable table, unused;
+            tabulate(bsdf, all_cells, table);
+            const bool is_linear = !bsdf.specular && window == whole_square;
+            expect_close(shade(incident, bsdf, unused).total, shade(incident, table).total,
+                         is_linear ? 1e-5f : 3e-3f);
+            EXPECT_TRUE(unused.r.empty());
+        }
 }
 
 TEST(ReceiverFrame, TurnsAsLittleAsItCan) {

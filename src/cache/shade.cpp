@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t fine_points = 16;  // per fine cell: 4 in each of its bits
 constexpr float narrow_lobe = 0.3f;      // GGX alpha; wider lobes vary little within a cell
+constexpr float wide_lobe = 0.4f;        // still wider ones, little within 2 × 2 cells
 constexpr float greatest_curvature =
     0.3f;  // of the BSDF over a cell, against its value, before the cell counts as fine
 
@@ -38,6 +39,25 @@ const DirectionTable& cell_centers() {
         for (std::size_t i = 0; i < cell_count; ++i) {
             const auto x = static_cast<float>(i % cell_side), y = static_cast<float>(i / cell_side);
             t.set(i, square_to_hemisphere({(x + 0.5f) / cell_side, (y + 0.5f) / cell_side}));
+        }
+        return t;
+    }();
+    return table;
+}
+
+/// Of tiles of 2 × 2 cells the means of their cells' directions, a little shorter than 1: what is linear in
+/// the direction, as a cosine is, loses nothing.
+const DirectionTable& tile_directions() {
+    static const DirectionTable table = [] {
+        constexpr std::size_t side = cell_side / 2;
+        const DirectionTable& cells = cell_centers();
+        DirectionTable t(side * side);
+        for (std::size_t i = 0; i < side * side; ++i) {
+            const std::size_t first = i / side * 2 * cell_side + i % side * 2;
+            const auto mean = [&](const std::vector<float>& v) {
+                return 0.25f * (v[first] + v[first + 1] + v[first + cell_side] + v[first + cell_side + 1]);
+            };
+            t.set(i, {{mean(cells.x), mean(cells.y), mean(cells.z)}});
         }
         return t;
     }();
@@ -91,7 +111,7 @@ void refine(const ReceiverBsdf& bsdf, BsdfTable& table) {
     for (const std::uint32_t cell : table.fine_cells) table.r[cell] = table.g[cell] = table.b[cell] = 0;
 }
 
-bool is_wide(const ReceiverBsdf& bsdf) { return !bsdf.specular || bsdf.ggx.alpha >= narrow_lobe; }
+bool is_as_wide(const ReceiverBsdf& bsdf, float alpha) { return !bsdf.specular || bsdf.ggx.alpha >= alpha; }
 
 Spectrum fine_cell_sum(const std::vector<std::uint32_t>& radiance, const Mask& lit, const BsdfTable& table,
                        std::size_t fine) {
@@ -119,16 +139,20 @@ Spectrum reflected(const std::vector<std::uint32_t>& radiance, const Mask& lit, 
 
 }  // namespace
 
-void tabulate(const ReceiverBsdf& bsdf, BsdfTable& table) {
+void tabulate(const ReceiverBsdf& bsdf, const CellMask& cells, BsdfTable& table) {
     table.r.resize(cell_count);
     table.g.resize(cell_count);
     table.b.resize(cell_count);
     table.fine_cells.clear();
     table.fine_bits.clear();
-    evaluate(bsdf, cell_centers().span(0, cell_count), {table.r, table.g, table.b});
-    if (is_wide(bsdf)) return;
+    const Directions centers = cell_centers().span(0, cell_count);
+    if (is_as_wide(bsdf, narrow_lobe)) {
+        evaluate_cells(bsdf, centers, cells, {table.r, table.g, table.b});
+        return;
+    }
+    evaluate_cells(bsdf, centers, with_neighbours(cells), {table.r, table.g, table.b});
     // A cell's centre does not stand for its mean by about a 24th of the curvature.
-    find_curved_cells(table.g, greatest_curvature, table.fine_cells);
+    find_curved_cells(table.g, cells, greatest_curvature, table.fine_cells);
     refine(bsdf, table);
 }
 
@@ -141,14 +165,14 @@ ReflectedRadiance shade(const Reprojection& incident, const BsdfTable& table, st
 
 ReflectedRadiance shade(const Reprojection& incident, const ReceiverBsdf& bsdf, BsdfTable& scratch,
                         std::span<float> products) {
-    if (!is_wide(bsdf) || !incident.direct.empty()) {
-        tabulate(bsdf, scratch);
+    if (!is_as_wide(bsdf, wide_lobe) || !incident.direct.empty() || !products.empty()) {
+        tabulate(bsdf, cells_of(incident.lit), scratch);
         return shade(incident, scratch, products);
     }
+    const DirectionTable& directions = tile_directions();
     const Spectrum sum =
-        reflect_cells(bsdf, cell_centers().span(0, cell_count), incident.radiance, incident.lit, products)
+        reflect_tiles(bsdf, directions.span(0, directions.x.size()), incident.radiance, incident.lit)
         * bit_solid_angle;
-    for (float& product : products) product *= bit_solid_angle;
     return {sum, sum};
 }
 

@@ -22,7 +22,8 @@ struct BsdfTable {
     std::vector<float> scratch;
 };
 
-void tabulate(const ReceiverBsdf& bsdf, BsdfTable& table);
+/// For some cells, such as those that are lit; what the table has of others means nothing.
+void tabulate(const ReceiverBsdf& bsdf, const CellMask& cells, BsdfTable& table);
 
 struct ReflectedRadiance {
     Spectrum total, direct;
@@ -33,8 +34,8 @@ struct ReflectedRadiance {
 [[nodiscard]] ReflectedRadiance shade(const Reprojection& incident, const BsdfTable& table,
                                       std::span<float> products = {});
 
-/// The same without a table where one would serve once: lobes that are wide need no fine cells. `scratch` is
-/// overwritten.
+/// The same where a table would serve once: of lit cells alone, and where the lobe is wide and no products
+/// are wanted without one, by tiles of 2 × 2 cells. `scratch` is overwritten.
 [[nodiscard]] ReflectedRadiance shade(const Reprojection& incident, const ReceiverBsdf& bsdf,
                                       BsdfTable& scratch, std::span<float> products = {});
 
