@@ -88,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"reproject-mc", "demo.glb"}, Case{"reproject-mc", "cornell-glossy.glb", "tile"},
                       Case{"reproject-mc", "demo.glb", "tile"}, Case{"cache", "cornell-glossy.glb"},
                       Case{"cache", "demo.glb"}, Case{"irradiance-cache", "cornell-glossy.glb"},
-                      Case{"irradiance-cache", "demo.glb"}));
+                      Case{"irradiance-cache", "demo.glb"},
+                      Case{"radiance-cache", "../tests/pictures/scenes/metals.gltf"}));
 
 TEST_P(Determinism, ThreadsDoNotChangeABit) {
     const Scene scene = scene_of(GetParam());

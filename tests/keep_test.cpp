@@ -52,7 +52,7 @@ Outcome render_in_pieces(const Scene& scene, const RenderSettings& settings, con
 class Interruption : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Interruption,
                          ::testing::Values("path", "gather", "reproject", "reproject-mc", "cache",
-                                           "block-gather", "irradiance-cache"));
+                                           "block-gather", "irradiance-cache", "radiance-cache"));
 
 TEST_P(Interruption, NeitherItNorThreadsNorCropsChangeABit) {
     const Scene scene = project_scene("cornell-glossy.glb", "sky.exr");

@@ -33,7 +33,7 @@ double worst_block(const Image& a, const Image& b, int side, double scale = 1) {
 }
 
 class Rival : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Rival, ::testing::Values("irradiance-cache"));
+INSTANTIATE_TEST_SUITE_P(Methods, Rival, ::testing::Values("irradiance-cache", "radiance-cache"));
 
 TEST_P(Rival, AWhiteBodyVanishesInAWhiteSky) {  // no noise: every ray finds the same
     const Image image = render(project_scene("furnace-diffuse.glb", "white.pfm"), small(GetParam()));
@@ -78,6 +78,23 @@ TEST_P(Rival, AgreesWithPathsUnderASky) {
     EXPECT_LT(worst_block(image, reference, 12), 0.04);
 }
 
+constexpr const char* metals = "../tests/pictures/scenes/metals.gltf";
+
+/// A mirror, a sharp lobe and a broad one on matte ground.
+TEST_P(Rival, AgreesWithPathsOnMetals) {
+    const Scene scene = project_scene(metals, "validation/sky.pfm");
+    RenderSettings settings = small(GetParam());
+    settings.light_samples = settings.glossy_rays = 100;
+    settings.max_depth = 2;
+    const Image image = render(scene, settings);
+    settings.method = "path";
+    settings.samples_per_pixel = 512;
+    const Image reference = render(scene, settings);
+    EXPECT_LT(worst_block(image, reference, 36), 0.01);
+    EXPECT_LT(worst_block(image, reference, 12), 0.03);
+    EXPECT_GT(worst_block(image, reference, 12, 1.04), 0.03);
+}
+
 class Listener : public RenderObserver {
   public:
     void finished(const RenderStats& s) override { stats = s; }
@@ -96,6 +113,19 @@ TEST_P(Rival, ReportsRecordsAndTheirRays) {
     EXPECT_GT(listener.stats.rays.at("record"), 800 * listener.stats.cache->records);
     EXPECT_GT(testing::mean_of(image), 0);
     EXPECT_GE(std::ranges::max(image.layer("records")->pixels), 2);
+}
+
+TEST(RadianceCacheMethod, HoldsBroadLobesInRecordsAndTracesTheSharpOnes) {
+    const Scene scene = project_scene(metals, "validation/sky.pfm");
+    RenderSettings settings = small("irradiance-cache");
+    settings.max_depth = 1;
+    Listener diffuse, broad;
+    (void)render(scene, settings, &diffuse);
+    settings.method = "radiance-cache";
+    (void)render(scene, settings, &broad);
+    EXPECT_GT(broad.stats.cache->records, diffuse.stats.cache->records + 5);
+    EXPECT_LT(broad.stats.rays.at("gather"), diffuse.stats.rays.at("gather"));
+    EXPECT_GT(broad.stats.rays.at("gather"), 0u);
 }
 
 TEST_P(Rival, LessErrorTakesMoreRecords) {

@@ -51,7 +51,7 @@ struct RenderSettings {
                              // [Ward88]; less is more exact and slower, 0.02 … 1
     int glossy_rays = -1;  // the same: rays per camera sample along lobes that records do not hold; −1: 64
                            // per pixel
-    int harmonics = 10;  // `radiance-cache`: bands of the harmonics that a record holds, 3 … 16
+    int harmonics = 10;    // `radiance-cache`: bands of the harmonics that a record holds, 3 … 16
     std::string cache_scope = "image";  // "image", or "tile": caches of their own for tiles of 64 × 64 pixels
     std::string masking =
         "correlated";           // Smith masking-shadowing of microfacets: "correlated" or "separable"

@@ -23,9 +23,8 @@ LobeGather::LobeGather(const RenderSettings& settings, const IncidentRadiance& s
     : source_(source),
       split_(split),
       rays_(std::max(1u, chosen(settings.glossy_rays, rays_per_pixel, settings.samples_per_pixel))),
-      light_samples_(
-          std::max(1u, chosen(settings.light_samples, light_samples_per_pixel, settings.samples_per_pixel))) {
-}
+      light_samples_(std::max(
+          1u, chosen(settings.light_samples, light_samples_per_pixel, settings.samples_per_pixel))) {}
 
 SplitRadiance LobeGather::gathered(const ShadingPoint& x, const Bsdf& lobes, const SampleStream& stream,
                                    RayCounts& counts) const {

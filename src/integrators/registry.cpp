@@ -28,6 +28,7 @@ constexpr std::array methods{
     Method{"reproject", make_reproject},
     Method{"reproject-mc", make_reproject_mc},
     Method{"irradiance-cache", make_irradiance_cache},
+    Method{"radiance-cache", make_radiance_cache},
 };
 
 }  // namespace

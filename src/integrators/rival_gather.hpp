@@ -14,4 +14,9 @@ namespace relumine {
                                                                 const Transport& transport, const View& view,
                                                                 bool surface_layers);
 
+/// The same for diffuse surfaces, and radiance records in harmonics for those with broad lobes [Krivanek05].
+[[nodiscard]] std::unique_ptr<Integrator> make_radiance_cache(const RenderSettings& settings,
+                                                              const Transport& transport, const View& view,
+                                                              bool surface_layers);
+
 }  // namespace relumine

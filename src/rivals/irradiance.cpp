@@ -70,14 +70,14 @@ SplitIrradiance irradiance_of(const PolarHemisphere& hemisphere, const Frame& fr
 }
 
 Spectrum extrapolated(const Irradiance& at, Vec3 record_normal, Vec3 offset, Vec3 normal) {
-    const Spectrum e = at.value + at.rotation.along(cross(record_normal, normal)) + at.translation.along(offset);
+    const Spectrum e =
+        at.value + at.rotation.along(cross(record_normal, normal)) + at.translation.along(offset);
     return {std::max(e.r, 0.0f), std::max(e.g, 0.0f), std::max(e.b, 0.0f)};
 }
 
 float change_length(const SplitIrradiance& at) {
     const auto brightness = [](const Gradient& g) { return 0.2126f * g.r + 0.7152f * g.g + 0.0722f * g.b; };
-    const float change =
-        length(brightness(at.direct.translation) + brightness(at.indirect.translation));
+    const float change = length(brightness(at.direct.translation) + brightness(at.indirect.translation));
     return change > 0 ? luminance(at.value()) / change : infinity;
 }
 

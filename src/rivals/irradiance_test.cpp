@@ -51,9 +51,10 @@ Derivatives exact_derivatives(Vec3 p, const Frame& frame) {
     constexpr float step = 1e-2f;
     Derivatives d{exact(p, frame.n), {}, {}};
     for (const Vec3 axis : {frame.s, frame.t}) {
-        d.translation += axis
-                         * static_cast<float>((exact(p + axis * step, frame.n) - exact(p - axis * step, frame.n))
-                                              / (2 * step));
+        d.translation +=
+            axis
+            * static_cast<float>((exact(p + axis * step, frame.n) - exact(p - axis * step, frame.n))
+                                 / (2 * step));
         const auto turned = [&](float angle) {
             return exact(p, frame.n * std::cos(angle) + cross(axis, frame.n) * std::sin(angle));
         };
@@ -115,7 +116,8 @@ TEST(IrradianceGradient, IsThatOfTheClosedForm) {
 TEST(IrradianceGradient, WrongStrataAreCaught) {
     const auto mirrored = [](PolarHemisphere& h) {
         for (int ring = 0; ring < h.grid.rings; ++ring)
-            std::reverse(&h.samples[h.grid.index(ring, 0)], &h.samples[h.grid.index(ring, 0)] + h.grid.sectors);
+            std::reverse(&h.samples[h.grid.index(ring, 0)],
+                         &h.samples[h.grid.index(ring, 0)] + h.grid.sectors);
     };
     EXPECT_GT(deviation(mirrored).translation, 0.05);
     const auto other_rings = [](PolarHemisphere& h) { h.grid.kind = Rings::even; };

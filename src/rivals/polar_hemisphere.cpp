@@ -32,8 +32,8 @@ class PolarTracer {
         const auto number = static_cast<std::uint32_t>(stratum);
         const auto sectors = static_cast<std::uint32_t>(out_.grid.sectors);
         const std::uint64_t random = hash(site_.key, number, 0x706f6c6172);
-        const float ring = static_cast<float>(number / sectors)
-                           + unit_float(static_cast<std::uint32_t>(random)),
+        const float ring =
+                        static_cast<float>(number / sectors) + unit_float(static_cast<std::uint32_t>(random)),
                     sector = static_cast<float>(number % sectors)
                              + unit_float(static_cast<std::uint32_t>(random >> 32));
         PolarSample& sample = out_.samples[stratum];

@@ -75,7 +75,7 @@ struct PolarHemisphere {
 
 /// What is left of `found` along a traced ray when the bright part of the light is taken away.
 struct DimPart {
-    Spectrum direct;          // dim
+    Spectrum direct;           // dim
     BrightSplit::Part bright;  // of what came straight from a light
 };
 [[nodiscard]] DimPart split_direct(const Transport& t, const BrightSplit& split, const Ray& ray,

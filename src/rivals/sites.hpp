@@ -20,9 +20,9 @@ struct Site {
 /// Bounds on how far records are used, pixels: closer ones cost more than they gain, farther ones show.
 inline constexpr float least_reach = 1.5f, most_reach = 40;
 
-/// A site's radius: the harmonic mean distance of what is seen, no more than the length within which the light
-/// changes, within bounds relative to a pixel's `footprint`, so that it is used `accuracy` times that far.
-/// Also gives what the gradients must be multiplied by where the lower bound is more than the radius
+/// A site's radius: the harmonic mean distance of what is seen, no more than the length within which the
+/// light changes, within bounds relative to a pixel's `footprint`, so that it is used `accuracy` times that
+/// far. Also gives what the gradients must be multiplied by where the lower bound is more than the radius
 /// [Krivanek09].
 struct SiteRadius {
     float radius, least, gradient_scale;

@@ -40,8 +40,8 @@ float worst_step(const Sites& sites) {
     float worst = 0;
     for (std::size_t i = 0; i < sites.size(); ++i)
         for (std::size_t j = 0; j < sites.size(); ++j)
-            worst = std::max(worst, sites[i].radius - sites[j].radius
-                                        - length(sites[i].position - sites[j].position));
+            worst = std::max(
+                worst, sites[i].radius - sites[j].radius - length(sites[i].position - sites[j].position));
     return worst;
 }
 
