@@ -53,6 +53,8 @@ void check_cache(const RenderSettings& s) {
     check_range("records per point", s.records_per_point, 1, 16);
     check_choice("gap cell", s.gap_cell, {1, 2, 4, 8});
     check_real("BSDF share", s.bsdf_share, 0, 1);
+    check_real("accuracy", s.accuracy, 0.02f, 1);
+    check_range("harmonics", s.harmonics, 3, 16);
     check_name("cache scope", s.cache_scope, {"image", "tile"});
 }
 
@@ -78,12 +80,15 @@ void validate(const RenderSettings& s) {
     check_name("pixel filter", s.pixel_filter, {"box", "blackman-harris"});
     check_name("sampler", s.sampler, {"auto", "sobol", "stratified", "independent"});
     check_range("gather rays", s.gather_rays, 1, million);
+    check_range("glossy rays", s.glossy_rays, -1, million);
     check_range("light samples", s.light_samples, -1, million);
     check_range("residual rays", s.residual_rays, -1, million);
     check_real("error", s.error, 0.0005f, 0.5f);
     if (s.method != "path") {  // their numbers are 32-bit indices into one sequence per pixel
         check_range("gather rays × samples per pixel", std::int64_t{s.gather_rays} * s.samples_per_pixel, 1,
                     max_rays_per_pixel);
+        check_range("glossy rays × samples per pixel", std::int64_t{s.glossy_rays} * s.samples_per_pixel,
+                    -million, max_rays_per_pixel);
         check_range("light samples × samples per pixel", std::int64_t{s.light_samples} * s.samples_per_pixel,
                     -million, max_rays_per_pixel);
     }

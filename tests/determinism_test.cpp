@@ -40,6 +40,14 @@ RenderSettings settings_for(const Case& c) {
         if (c.cache_scope == "tile") settings.samples_per_pixel = 2;
         for (const char* layer : {"records", "gaps", "layers", "unknown"}) settings.aovs.emplace_back(layer);
     }
+    if (c.method.ends_with("-cache")) {
+        settings.glossy_rays = settings.light_samples = 4;
+        settings.accuracy = 1;
+        settings.max_depth = 2;
+        settings.radiance = c.scene == "demo.glb" ? "emission" : "path";
+        settings.samples_per_pixel = 2;
+        settings.aovs.emplace_back("records");
+    }
     if (c.method == "cache") {
         settings.error = 0.05f;
         settings.max_depth = 3;
@@ -79,7 +87,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"reproject", "demo.glb", "tile"}, Case{"reproject-mc", "cornell-glossy.glb"},
                       Case{"reproject-mc", "demo.glb"}, Case{"reproject-mc", "cornell-glossy.glb", "tile"},
                       Case{"reproject-mc", "demo.glb", "tile"}, Case{"cache", "cornell-glossy.glb"},
-                      Case{"cache", "demo.glb"}));
+                      Case{"cache", "demo.glb"}, Case{"irradiance-cache", "cornell-glossy.glb"},
+                      Case{"irradiance-cache", "demo.glb"},
+                      Case{"radiance-cache", "../tests/pictures/scenes/metals.gltf"}));
 
 TEST_P(Determinism, ThreadsDoNotChangeABit) {
     const Scene scene = scene_of(GetParam());

@@ -19,9 +19,9 @@
 namespace {
 
 /// The folders of src/, each below those it may include.
-constexpr std::array<std::string_view, 11> folder_order{"base",        "image",    "scene", "trace",
-                                                        "shading",     "radiance", "cache", "blocks",
-                                                        "integrators", "film",     "cli"};
+constexpr std::array<std::string_view, 12> folder_order{"base",    "image",       "scene", "trace",
+                                                        "shading", "radiance",    "cache", "blocks",
+                                                        "rivals",  "integrators", "film",  "cli"};
 /// Folders that may include less than everything above them; itself goes without saying.
 const std::map<std::string_view, std::vector<std::string_view>> narrower{
     {"film", {"base", "image"}},  // knows tiles, not integrators

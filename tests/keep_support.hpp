@@ -37,6 +37,7 @@ inline RenderSettings small_settings(const std::string& method) {
     settings.gather_rays = 16;
     settings.record_size = 16;
     settings.gap_cell = 8;
+    settings.glossy_rays = settings.light_samples = method.ends_with("-cache") ? 4 : -1;
     settings.max_depth = 2;
     settings.error = 0.1f;
     settings.radiance = "emission";

@@ -52,7 +52,7 @@ Outcome render_in_pieces(const Scene& scene, const RenderSettings& settings, con
 class Interruption : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Interruption,
                          ::testing::Values("path", "gather", "reproject", "reproject-mc", "cache",
-                                           "block-gather"));
+                                           "block-gather", "irradiance-cache", "radiance-cache"));
 
 TEST_P(Interruption, NeitherItNorThreadsNorCropsChangeABit) {
     const Scene scene = project_scene("cornell-glossy.glb", "sky.exr");
@@ -270,7 +270,7 @@ TEST(Limits, WhatDoesNotFitIsRefusedWithTheNumberNeeded) {
 }
 
 TEST(Limits, MethodsTellWhatTheyHold) {
-    for (const char* method : {"reproject", "cache"}) {
+    for (const char* method : {"reproject", "cache", "irradiance-cache"}) {
         RenderSettings settings = small_settings(method);
         settings.aovs.clear();
         settings.width = settings.height = 4000;

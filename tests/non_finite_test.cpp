@@ -38,7 +38,7 @@ Scene scene_with_poison() {
 class NonFinite : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, NonFinite,
                          ::testing::Values("path", "gather", "reproject", "reproject-mc", "cache",
-                                           "block-gather"));
+                                           "block-gather", "irradiance-cache", "radiance-cache"));
 
 TEST_P(NonFinite, SamplesAreDroppedCountedAndReplayed) {
     const Scene scene = scene_with_poison();

@@ -31,7 +31,8 @@ class ManyThreads : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Methods, ManyThreads,
                          ::testing::Values(Case{"path"}, Case{"gather"}, Case{"reproject"},
                                            Case{"reproject", "direct", "tile"}, Case{"reproject-mc"},
-                                           Case{"cache"}, Case{"block-gather", "path"}));
+                                           Case{"cache"}, Case{"block-gather", "path"},
+                                           Case{"irradiance-cache"}, Case{"radiance-cache"}));
 INSTANTIATE_TEST_SUITE_P(Fields, ManyThreads,
                          ::testing::Values(Case{"gather", "radiosity"}, Case{"cache", "radiosity"}));
 

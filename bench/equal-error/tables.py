@@ -160,7 +160,8 @@ def table_of_gains(scenes: dict[str, dict], targets: list[float]) -> list[str]:
              "Cost of the rival over the cost of ours; above 1 ours is cheaper. Curves are interpolated in log cost and log error "
              "and never extrapolated: `>` the rival did not reach the error, or ours was better at its cheapest; `≤` the rival "
              "was better at its cheapest; `–` ours did not reach the error, or nothing can be said.", ""]
-    pairs = [(ours, None) for ours in (*methods.OURS, methods.BLOCK_RIVAL, "reproject", "reproject-mc")]
+    pairs = [(ours, None) for ours in (*methods.OURS, methods.BLOCK_RIVAL, "irradiance-cache", "radiance-cache", "reproject",
+                                             "reproject-mc")]
     pairs += [("cache", methods.BLOCK_RIVAL)]
     for ours, rival in pairs:
         if not any(ours in scene["points"] for scene in scenes.values()):

@@ -21,20 +21,22 @@ struct RenderSettings {
     int samples_per_pixel = 16;             // 1 … 2²⁰ camera samples
     std::string pixel_sampling = "jitter";  // "jitter" or "center"
     std::string pixel_filter = "box";       // "box" (one pixel wide) or "blackman-harris" (3 pixels wide)
-    std::string sampler = "auto";  // "sobol", "stratified", "independent"; auto: sobol for path, cache and
-                                   // block-gather, else stratified
+    std::string sampler = "auto";  // "sobol", "stratified", "independent"; auto: stratified for gather,
+                                   // reproject and reproject-mc, else sobol
     int gather_rays = 4096;        // `gather`, `reproject-mc`: rays per shading point, 1 … 2²⁰
     bool gather_packets =
         true;                // `gather`: trace rays sixteen at a time; false: one by one, as the paper did
     int light_samples = -1;  // shadow rays per shading point to the bright part of the light; −1: `gather`
-                             // none, `cache` as many as `error` asks for
+                             // none, `cache` as many as `error` asks for, `irradiance-cache` and
+                             // `radiance-cache` 16 per pixel
     int max_depth = -1;      // scattering vertices of a path; −1: unlimited with Russian roulette
     std::string radiance = "auto";  // methods that gather: "emission", "direct", "radiosity", "path"; auto:
                                     // radiosity where light is reflected more than once
     int photons = -1;  // methods that use a radiance field: paths from lights for caustics, 0 … 2²⁴; −1: as
                        // many as the method wants, which is none yet. Never where `unbiased`
-    int record_size = 64;       // `reproject`, `reproject-mc`: n, a record has n × n rays; 16, 32, 64 or 128
-    int record_layers = 16;     // the same: K, depth layers of a record, 1 … 64
+    int record_size = 64;    // `reproject`, `reproject-mc`, `irradiance-cache`, `radiance-cache`: n, a record
+                             // has n × n rays; 16, 32, 64 or 128
+    int record_layers = 16;  // the same: K, depth layers of a record, 1 … 64
     float record_spacing = 1;   // the same: factor on how far records are used, 0.01 … 100
     int records_per_point = 3;  // the same: M, the most records that one point uses, 1 … 16
     int gap_cell = 4;           // the same: k, one ray for the gaps of k × k bits; 1, 2, 4 or 8
@@ -45,6 +47,11 @@ struct RenderSettings {
     bool filter_residual = true;  // `cache`: smooth what residual rays find; never where `unbiased`
     int residual_rays = -1;  // `cache`: rays per camera sample for what maps get wrong; −1: as `error` asks
                              // for, shared by all samples of a pixel
+    float accuracy = 0.2f;   // `irradiance-cache`, `radiance-cache`: a, up to which error a record is used
+                             // [Ward88]; less is more exact and slower, 0.02 … 1
+    int glossy_rays = -1;  // the same: rays per camera sample along lobes that records do not hold; −1: 64
+                           // per pixel
+    int harmonics = 10;    // `radiance-cache`: bands of the harmonics that a record holds, 3 … 16
     std::string cache_scope = "image";  // "image", or "tile": caches of their own for tiles of 64 × 64 pixels
     std::string masking =
         "correlated";           // Smith masking-shadowing of microfacets: "correlated" or "separable"

@@ -117,7 +117,7 @@ void add_sampling_options(CLI::App& app, RenderSettings& s) {
     add_number(
         app,
         {"--light-samples", "N", "shadow rays to the bright light per shading point, for gather and cache"},
-        s.light_samples, "gather: 0, cache: by --error");
+        s.light_samples, "gather: 0, cache: by --error, others: 16 per pixel");
     add_value(app, {"--gather-packets", "on|off", "trace the rays of gather sixteen at a time"}, "on",
               [&](const std::string& value) { s.gather_packets = parse_switch("--gather-packets", value); });
     add_number(app, {"--seed", "N", "same seed, same bits"}, s.seed, "0");
@@ -141,6 +141,15 @@ void add_cache_options(CLI::App& app, RenderSettings& s) {
         [&](const std::string& value) { s.filter_residual = parse_switch("--filter-residual", value); });
     add_number(app, {"--residual-rays", "N", "for cache: rays per camera sample for what the maps get wrong"},
                s.residual_rays, "by --error");
+}
+
+/// Of irradiance-cache and radiance-cache.
+void add_rival_options(CLI::App& app, RenderSettings& s) {
+    add_number(app, {"--accuracy", "A", "up to which error a record is used [Ward88]"}, s.accuracy, "0.2");
+    add_number(app, {"--glossy-rays", "N", "rays per camera sample along lobes that records do not hold"},
+               s.glossy_rays, "64 per pixel");
+    add_number(app, {"--harmonics", "N", "bands of the harmonics in radiance-cache's records"}, s.harmonics,
+               std::to_string(s.harmonics));
 }
 
 void add_crop_option(CLI::App& app, RenderSettings& s) {
@@ -197,6 +206,8 @@ void add_options(CLI::App& app, RenderOptions& options) {
     add_record_options(app, options.settings);
     add_cache_options(app, options.settings);
     add_method_options(app, options.settings);
+    app.option_defaults()->group("Records (irradiance-cache, radiance-cache)");
+    add_rival_options(app, options.settings);
     app.option_defaults()->group("Light");
     add_light_options(app, options.settings);
     add_environment_options(app, options.scene_options);

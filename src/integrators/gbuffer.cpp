@@ -12,19 +12,12 @@ namespace {
 
 constexpr int block = 16;  // pixels along each side of a piece of work
 
-/// Metres that a pixel covers, across the view, at a distance along its ray.
-float pixel_footprint(const View& view, const CameraSample& s, float distance) {
-    const Ray beside = view.camera.through({static_cast<float>(s.x) + 1.5f, static_cast<float>(s.y) + 0.5f});
-    const Ray here = view.camera.through({static_cast<float>(s.x) + 0.5f, static_cast<float>(s.y) + 0.5f});
-    return length((beside.origin - here.origin) + (beside.direction.v - here.direction.v) * distance);
-}
-
 CachePoint cache_point(const View& view, const CameraSample& s, const ShadingPoint& x) {
     const SurfacePoint& p = x.vertex.point;
     return {{p.position, frame_around(p.geometric_normal), p.offset, x.path.depth},
             s.x,
             s.y,
-            pixel_footprint(view, s, x.distance),
+            pixel_footprint(view, s.x, s.y, x.distance),
             hash(s.stream.key, s.stream.index, 0x7265636f7264)};
 }
 
@@ -50,6 +43,14 @@ std::vector<PixelRect> blocks_of(const PixelRect& region) {
 }
 
 }  // namespace
+
+float pixel_footprint(const View& view, int x, int y, float distance) {
+    const auto through = [&](float column) {
+        return view.camera.through({static_cast<float>(x) + column, static_cast<float>(y) + 0.5f});
+    };
+    const Ray here = through(0.5f), beside = through(1.5f);
+    return length((beside.origin - here.origin) + (beside.direction.v - here.direction.v) * distance);
+}
 
 GBuffer::GBuffer(const Transport& t, const View& view, const PixelRect& region, std::uint32_t sample,
                  std::uint32_t max_depth, bool surface_layers, int threads, RayCounts& rays)

@@ -17,6 +17,9 @@ struct GBufferPixel {
     FirstSurface surface;               // only if asked for
 };
 
+/// Metres that a pixel covers, across the view, at a distance along its ray.
+[[nodiscard]] float pixel_footprint(const View& view, int x, int y, float distance);
+
 /// One sample of each pixel of a region.
 class GBuffer {
   public:

@@ -7,6 +7,7 @@
 #include "integrators/cached_gather.hpp"
 #include "integrators/gather.hpp"
 #include "integrators/path_tracer.hpp"
+#include "integrators/rival_gather.hpp"
 
 namespace relumine {
 namespace {
@@ -20,9 +21,14 @@ struct Method {
 };
 
 constexpr std::array methods{
-    Method{"cache", make_block_cache},   Method{"block-gather", make_block_gather},
-    Method{"path", make_path_tracer},    Method{"gather", make_gather},
-    Method{"reproject", make_reproject}, Method{"reproject-mc", make_reproject_mc},
+    Method{"cache", make_block_cache},
+    Method{"block-gather", make_block_gather},
+    Method{"path", make_path_tracer},
+    Method{"gather", make_gather},
+    Method{"reproject", make_reproject},
+    Method{"reproject-mc", make_reproject_mc},
+    Method{"irradiance-cache", make_irradiance_cache},
+    Method{"radiance-cache", make_radiance_cache},
 };
 
 }  // namespace

@@ -99,6 +99,13 @@ RenderSettings cache(bool unbiased) {
     return settings;
 }
 
+RenderSettings rival(const char* method) {
+    RenderSettings settings;
+    settings.method = method;
+    settings.record_size = 32;
+    return settings;
+}
+
 /// Tolerances are one and a half to two times what was measured when they were set, noise of short renders
 /// included; records of 16 × 16 rays make `reproject` coarse near a lamp.
 std::vector<MethodCase> make_methods() {
@@ -131,6 +138,9 @@ std::vector<MethodCase> make_methods() {
         {"mirrors", "gather --radiance radiosity", gather("radiosity"), {0.01, 0.08, 0.06}},
         {"instances", "cache", cache(false), {0.01, 0.1, 0.09}},
         {"sun", "cache --unbiased", cache(true), {0.01, 0.1, 0.09}},
+        {"room", "irradiance-cache", rival("irradiance-cache"), {0.01, 0.02, 0.03}},
+        {"normal-map", "irradiance-cache", rival("irradiance-cache"), {0.01, 0.08, 0.02}},
+        {"metals", "radiance-cache", rival("radiance-cache"), {0.01, 0.04, 0.05}},
     };
 }
 
