@@ -199,7 +199,7 @@ void PathBatch::step(WalkPacket& packet) {
     const StepNumbers numbers(packet.samples, depth_, t_.tracer.asks_for_opacity());
     LaneMask plain{}, other{};
     bool any_plain = false;
-    layers_.specular = false;
+    layers_.specular = layers_.stretched = triangles_.oriented = false;
     for (std::size_t i = 0; i < packet_size; ++i) {
         if (paths.alive[i] == 0) continue;
         if (paths.hit.instance[i] == no_instance) {

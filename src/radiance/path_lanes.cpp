@@ -41,6 +41,8 @@ void PathLanes::set(std::size_t i, const PathState& path) {
 void TriangleLanes::set(std::size_t i, const ShadingTriangle& triangle, const Hit& hit, Vec3 direction) {
     for (std::size_t corner = 0; corner < 3; ++corner) corners[corner].set(i, triangle.corners[corner]);
     normal.set(i, triangle.normal);
+    lobe_axis.set(i, triangle.lobe_axis);
+    oriented = oriented || triangle.lobe_axis != Vec3{};
     winding[i] = triangle.winding;
     u[i] = hit.u;
     v[i] = hit.v;
@@ -54,6 +56,9 @@ void LayerLanes::set(std::size_t i, const MetallicRoughness& layers) {
     specular_f0.set(i, layers.specular_f0);
     specular_f90.set(i, layers.specular_f90);
     alpha[i] = layers.ggx.alpha;
+    stretch_x[i] = layers.ggx.stretch_x;
+    stretch_y[i] = layers.ggx.stretch_y;
+    stretched = stretched || is_anisotropic(layers.ggx);
     separable[i] = layers.ggx.masking == Masking::separable ? -1 : 0;
 }
 

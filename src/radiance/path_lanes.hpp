@@ -25,13 +25,15 @@ struct PathLanes {
 };
 
 /// The triangles that rays have hit, in world space: what surface_point makes of a triangle without a normal
-/// map.
+/// map. `set` does not take `oriented` back.
 struct TriangleLanes {
     std::array<Vec3Lanes, 3> corners;
     Vec3Lanes normal;         // of ShadingTriangle
     Lanes<float> u, v;        // barycentric weights of the second and third corner
+    Vec3Lanes lobe_axis;      // of ShadingTriangle
     Lanes<float> winding{};   // −1 where the order of the corners is reversed, else 1
     Vec3Lanes ray_direction;  // towards the surface
+    bool oriented = false;    // whether any lane has a lobe axis
 
     void set(std::size_t lane, const ShadingTriangle& triangle, const Hit& hit, Vec3 direction);
 };
@@ -47,7 +49,9 @@ struct LayerLanes {
     SpectrumLanes diffuse, coat_f0, coat_f90, specular_f0, specular_f90;
     Lanes<float> alpha;
     LaneMask separable;
-    bool specular = false;  // whether any lane has more than the diffuse base
+    Lanes<float> stretch_x, stretch_y;
+    bool specular = false;   // whether any lane has more than the diffuse base
+    bool stretched = false;  // whether any lane's lobe is anisotropic; `set` does not take it back
 
     void set(std::size_t lane, const MetallicRoughness& layers);
 };
