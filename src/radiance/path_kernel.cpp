@@ -331,8 +331,8 @@ HWY_INLINE void store_shadow_rays(const Vertices& vertex, const LightLanes& ligh
 }
 
 template <bool Stretched>
-HWY_INLINE void propose_all(const VertexLanes& vertices, const LayerLanes& layers, const LightLanes& lights,
-                            const SpectrumLanes& throughput, ShadowLanes& shadows) {
+HWY_NOINLINE void propose_all(const VertexLanes& vertices, const LayerLanes& layers, const LightLanes& lights,
+                              const SpectrumLanes& throughput, ShadowLanes& shadows) {
     for (std::size_t i = 0; i < packet_size; i += hn::Lanes(F())) {
         const Vertices vertex(vertices, i);
         const Layers<Stretched> bsdf(layers, i);
@@ -373,8 +373,8 @@ HWY_INLINE Survival survive(const ScatterNumbers& numbers, const PathLanes& path
 }
 
 template <bool Stretched>
-HWY_INLINE void scatter_all(const VertexLanes& vertices, const LayerLanes& layers,
-                            const ScatterNumbers& numbers, const LaneMask& lanes, PathLanes& paths) {
+HWY_NOINLINE void scatter_all(const VertexLanes& vertices, const LayerLanes& layers,
+                              const ScatterNumbers& numbers, const LaneMask& lanes, PathLanes& paths) {
     for (std::size_t i = 0; i < packet_size; i += hn::Lanes(F())) {
         const Mask wanted = load(lanes, i);
         const Vertices vertex(vertices, i);

@@ -41,12 +41,23 @@ void PathLanes::set(std::size_t i, const PathState& path) {
 void TriangleLanes::set(std::size_t i, const ShadingTriangle& triangle, const Hit& hit, Vec3 direction) {
     for (std::size_t corner = 0; corner < 3; ++corner) corners[corner].set(i, triangle.corners[corner]);
     normal.set(i, triangle.normal);
-    lobe_axis.set(i, triangle.lobe_axis);
-    oriented = oriented || triangle.lobe_axis != Vec3{};
     winding[i] = triangle.winding;
     u[i] = hit.u;
     v[i] = hit.v;
     ray_direction.set(i, direction);
+}
+
+void set_anisotropy(std::size_t i, Vec3 lobe_axis, const Ggx& ggx, TriangleLanes& triangles,
+                    LayerLanes& layers) {
+    if (!layers.stretched) {
+        layers.stretched = triangles.oriented = true;
+        layers.stretch_x.fill(1);
+        layers.stretch_y.fill(1);
+        triangles.lobe_axis = {};
+    }
+    layers.stretch_x[i] = ggx.stretch_x;
+    layers.stretch_y[i] = ggx.stretch_y;
+    triangles.lobe_axis.set(i, lobe_axis);
 }
 
 void LayerLanes::set(std::size_t i, const MetallicRoughness& layers) {
@@ -56,9 +67,6 @@ void LayerLanes::set(std::size_t i, const MetallicRoughness& layers) {
     specular_f0.set(i, layers.specular_f0);
     specular_f90.set(i, layers.specular_f90);
     alpha[i] = layers.ggx.alpha;
-    stretch_x[i] = layers.ggx.stretch_x;
-    stretch_y[i] = layers.ggx.stretch_y;
-    stretched = stretched || is_anisotropic(layers.ggx);
     separable[i] = layers.ggx.masking == Masking::separable ? -1 : 0;
 }
 

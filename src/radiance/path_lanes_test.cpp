@@ -137,10 +137,13 @@ struct Packet {
             paths[i] = scene.random_path(key);
             vertices.push_back(make_vertex(t, paths[i], {}));
             lanes.set(i, paths[i]);
-            triangles.set(i, shading_triangle(t.scene, paths[i].hit), paths[i].hit, paths[i].ray.direction.v);
+            const ShadingTriangle triangle = shading_triangle(t.scene, paths[i].hit);
+            triangles.set(i, triangle, paths[i].hit, paths[i].ray.direction.v);
             const MetallicRoughness* found = t.uniform_bsdfs.find_layers(
                 t.scene.meshes[index(t.scene.instances[paths[i].hit.instance].mesh)].material);
             layers.set(i, *found);
+            if (is_anisotropic(found->ggx))
+                set_anisotropy(i, triangle.lobe_axis, found->ggx, triangles, layers);
             layers.specular = layers.specular || !is_black(found->specular_f90);
             numbers.lobe[i] = uniform(key, 20);
             numbers.direction_x[i] = uniform(key, 21);

@@ -74,16 +74,20 @@ Vec2 rougher_direction(const SceneData& scene, const Material& material, const s
     return length > 0 ? Vec2{(c * x - s * y) / length, (s * x + c * y) / length} : Vec2{c, s};
 }
 
-/// Along which the lobes of an anisotropic material are rougher, in world space, before any normal map;
-/// `normal`: of any length.
-Vec3 lobe_axis(const SceneData& scene, const Mesh& mesh, const Triangle& triangle, const Hit& hit,
-               const NormalMapper& map, Vec3 normal) {
+/// Along which the lobes of an anisotropic material are rougher, in world space, before any normal map. Not
+/// inlined: isotropic surfaces have nothing to do with it.
+[[gnu::noinline]] Vec3 lobe_axis(const SceneData& scene, const Mesh& mesh, const Hit& hit,
+                                 const NormalMapper& map, const ShadingTriangle& at) {
+    const Triangle& triangle = mesh.triangles[hit.triangle];
     const auto of_facet = [&] {
         const Vec3 t = map.tangent(facet_tangent(mesh, triangle));
         return Vec4{t.x, t.y, t.z, 1};
     };
     const Vec4 tangent = mesh.tangents.empty() ? of_facet() : world_tangent(mesh, triangle, hit, map);
     const Vec3 along = xyz(tangent);
+    const auto& [a, b, c] = at.corners;
+    const Vec3 normal =
+        length_squared(at.normal) > 0 ? at.normal : cross(b - a, c - a) * map.winding();  // any length
     const Frame frame = frame_along(normalize(normal), along / std::max(max_abs(along), 1e-30f));
     const Vec2 rougher =
         rougher_direction(scene, scene.materials[index(mesh.material)], interpolate_uv(mesh, triangle, hit));
@@ -142,12 +146,8 @@ ShadingTriangle shading_triangle(const SceneData& scene, const Hit& hit) {
     ShadingTriangle triangle{world_triangle(scene, hit.instance, hit.triangle), {}, {}, map.winding()};
     if (!mesh.normals.empty())
         triangle.normal = map.normal(interpolate(mesh.normals, mesh.triangles[hit.triangle], hit));
-    if (is_anisotropic(scene.materials[index(mesh.material)])) {
-        const auto& [a, b, c] = triangle.corners;
-        const bool smooth = length_squared(triangle.normal) > 0;
-        triangle.lobe_axis = lobe_axis(scene, mesh, mesh.triangles[hit.triangle], hit, map,
-                                       smooth ? triangle.normal : cross(b - a, c - a) * map.winding());
-    }
+    if (is_anisotropic(scene.materials[index(mesh.material)]))
+        triangle.lobe_axis = lobe_axis(scene, mesh, hit, map, triangle);
     return triangle;
 }
 
