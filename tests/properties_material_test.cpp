@@ -33,6 +33,7 @@ Material random_material() {
     m.base_color = random_colour();
     m.metallic = *rc::gen::element(0.0f, 1.0f, unit_number());
     m.roughness = *rc::gen::element(0.0f, 0.04f, 1.0f, unit_number());
+    m.anisotropy = *rc::gen::element(0.0f, 0.0f, 1.0f, unit_number());
     m.ior = within(1, 2.5f);
     m.specular = *rc::gen::element(0.0f, 1.0f, unit_number());
     m.specular_color = random_colour();
@@ -59,10 +60,10 @@ Bsdf random_bsdf(Material& m) {
 
 /// What a report of a failure needs.
 void log(const Bsdf& bsdf, const Material& m, LocalDir w_out) {
-    RC_LOG() << "model " << bsdf.index() << ", roughness " << m.roughness << ", metallic " << m.metallic
-             << ", ior " << m.ior << ", specular " << m.specular << ", transmission " << m.transmission
-             << ", base " << m.base_color.r << " " << m.base_color.g << " " << m.base_color.b << ", cosine "
-             << w_out.v.z << std::endl;
+    RC_LOG() << "model " << bsdf.index() << ", roughness " << m.roughness << ", anisotropy " << m.anisotropy
+             << ", metallic " << m.metallic << ", ior " << m.ior << ", specular " << m.specular
+             << ", transmission " << m.transmission << ", base " << m.base_color.r << " " << m.base_color.g
+             << " " << m.base_color.b << ", cosine " << w_out.v.z << std::endl;
 }
 
 BsdfRandom random_numbers(std::uint64_t seed, std::uint32_t i) {

@@ -53,6 +53,22 @@ SCENES = {
 <emitter type="envmap"><string name="filename" value="sky.exr"/><float name="scale" value="1.5"/>
   <transform name="to_world"><rotate y="1" angle="70"/></transform></emitter></scene>""",
 }
+SCENES["brushed"] = HEAD + LAMP + """
+<shape type="sphere"><point name="center" x="-.8" y=".2" z="0"/><float name="radius" value=".7"/>
+  <bsdf type="roughconductor"><string name="distribution" value="ggx"/><float name="alpha_u" value=".4"/>
+  <float name="alpha_v" value=".1"/></bsdf></shape>
+<shape type="disk"><transform name="to_world"><scale value=".6"/><rotate x="1" angle="-50"/>
+  <translate x=".8" y=".1" z=".6"/></transform><bsdf type="twosided"><bsdf type="roughconductor"><string name="distribution" value="ggx"/>
+  <float name="alpha_u" value=".08"/><float name="alpha_v" value=".5"/></bsdf></bsdf></shape>
+<shape type="rectangle"><transform name="to_world"><scale value=".7"/><rotate z="1" angle="30"/>
+  <translate x=".9" y=".6" z="-1"/></transform><bsdf type="twosided"><bsdf type="roughconductor"><string name="distribution" value="ggx"/>
+  <float name="alpha_u" value=".05"/><float name="alpha_v" value=".3"/></bsdf></bsdf></shape>
+<emitter type="constant"><rgb name="radiance" value=".5 .6 .8"/></emitter></scene>"""
+SCENES["brushed-glass"] = HEAD + LAMP + """
+<shape type="sphere"><point name="center" x="-.6" y=".2" z="0"/><float name="radius" value=".7"/>
+  <bsdf type="roughdielectric"><string name="distribution" value="ggx"/><float name="alpha_u" value=".35"/>
+  <float name="alpha_v" value=".1"/></bsdf></shape>
+<emitter type="constant"><rgb name="radiance" value=".5 .6 .8"/></emitter></scene>"""
 BALL = """<shape type="sphere"><point name="center" x="-.6" y=".2" z="0"/><float name="radius" value=".7"/>
   <bsdf type="roughdielectric"><string name="distribution" value="ggx"/><float name="alpha" value=".2"/></bsdf></shape>
 <emitter type="constant"/><emitter type="spot"><transform name="to_world"><lookat origin="2, 4, 2" target="0, 0, 0"

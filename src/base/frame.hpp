@@ -32,4 +32,13 @@ inline Frame frame_around(Vec3 n) {
     return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }
 
+/// The frame around a unit normal whose s is closest to `direction`; that of frame_around where none is.
+inline Frame frame_along(Vec3 n, Vec3 direction) {
+    const Vec3 s = direction - n * dot(n, direction);
+    const float length2 = dot(s, s);
+    if (!(length2 > 1e-12f * dot(direction, direction))) return frame_around(n);
+    const Vec3 unit_s = s / std::sqrt(length2);
+    return {unit_s, cross(n, unit_s), n};
+}
+
 }  // namespace relumine

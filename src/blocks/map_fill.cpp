@@ -8,8 +8,8 @@ namespace relumine {
 namespace {
 
 /// Radians that an occluder may move between two anchors for what is behind it to count all the same: about
-/// a tile's side (.22). With .2 there is a tenth more noise, with no bound at all indirect light in the room of
-/// scenes/interior.glb is 2 % too dark.
+/// a tile's side (.22). With .2 there is a tenth more noise, with no bound at all indirect light in the room
+/// of scenes/interior.glb is 2 % too dark.
 constexpr float most_parallax = 0.3f;
 
 /// Off a tangent plane, against the distance from where it touches: a point that is no farther behind it is
@@ -89,7 +89,8 @@ void MapFill::find_nearest(const MapRecord& record) {
     own_ = &record;
     nearest_.assign(grid_.tiles, none);
     const auto keep_nearer = [&](std::uint32_t& at, std::uint32_t other) {
-        if (other != none && (at == none || record.seen[other].distance < record.seen[at].distance)) at = other;
+        if (other != none && (at == none || record.seen[other].distance < record.seen[at].distance))
+            at = other;
     };
     for (std::uint32_t i = 0; i < record.seen.size(); ++i)
         keep_nearer(nearest_[record.seen[i].run.first / tile_texels], i);

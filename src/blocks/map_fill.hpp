@@ -32,8 +32,8 @@ class MapFill {
   private:
     /// What is in a texel, or in several.
     struct Sum {
-        Spectrum direct, indirect;  // of points, by weight
-        Spectrum tint;              // of open directions
+        Spectrum direct, indirect;   // of points, by weight
+        Spectrum tint;               // of open directions
         float weight = 0, seen = 0;  // of both, of points
 
         void add(const Sum& s);
@@ -54,7 +54,7 @@ class MapFill {
     std::vector<std::uint32_t> right_, below_;  // by tile: its neighbours
     std::vector<Sum> sums_;                     // by texel
     const MapRecord* own_ = nullptr;
-    std::vector<std::uint32_t> nearest_;        // by tile: of own_, the nearest met in it and in those around it
+    std::vector<std::uint32_t> nearest_;  // by tile: of own_, the nearest met in it and in those around it
     ProjectedPoints projected_;
 };
 

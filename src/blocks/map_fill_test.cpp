@@ -98,7 +98,8 @@ TEST(MapFill, OtherRecordsTellWhatLiesBetweenTheRays) {
     std::vector<MapRecord> others;
     const double alone = error(filled(stage, own, others));
     for (std::uint64_t i = 0; i < 16; ++i)
-        others.push_back(record_at(stage, {uniform(i, 1, -0.3f, 0.3f), uniform(i, 2, -0.3f, 0.3f), 0}, 1, i + 2));
+        others.push_back(
+            record_at(stage, {uniform(i, 1, -0.3f, 0.3f), uniform(i, 2, -0.3f, 0.3f), 0}, 1, i + 2));
     EXPECT_LT(error(filled(stage, own, others)), alone / 2.5);
 }
 

@@ -39,8 +39,15 @@ void MapIntegral::run(const Blend& blend, const ReceiverBsdf& bsdf, Vec3 geometr
     const Vec3 w_out =
         bsdf.shading_x * bsdf.w_out.v.x + bsdf.shading_y * bsdf.w_out.v.y + bsdf.shading_z * bsdf.w_out.v.z;
     blend_tiles(blend_, {luminance_, variance_, known_});
-    choose_tiers(grid_, {geometric_normal, bsdf.shading_z, w_out, bsdf.specular ? bsdf.ggx.alpha : 0, exact_},
-                 known_, tiers_);
+    TierQuery query{
+        geometric_normal, bsdf.shading_z, w_out, bsdf.specular ? bsdf.ggx.alpha : 0, exact_, 0, 0, {}, {}};
+    if (is_anisotropic(bsdf.ggx)) {
+        query.alpha_x = alpha_x(bsdf.ggx);
+        query.alpha_y = alpha_y(bsdf.ggx);
+        query.axis_x = bsdf.shading_x;
+        query.axis_y = bsdf.shading_y;
+    }
+    choose_tiers(grid_, query, known_, tiers_);
     evaluate_tiles();
     list_fine_tiles();
     evaluate_texels();

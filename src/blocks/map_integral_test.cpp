@@ -59,6 +59,9 @@ MapIntegral integral_of(const MapStage& stage, const QuadraturePoints& points, b
 }
 
 Bsdf metal(float alpha) { return RoughConductor{{0.9f, 0.7f, 0.5f}, {alpha, Masking::correlated}}; }
+Bsdf brushed(float alpha_x, float alpha_y) {
+    return RoughConductor{{0.9f, 0.7f, 0.5f}, make_ggx(alpha_x, alpha_y, Masking::correlated)};
+}
 Bsdf plastic() {
     return MetallicRoughness{{0.5f, 0.2f, 0.1f},
                              Spectrum{0.04f},
@@ -78,7 +81,8 @@ class MapIntegrals : public ::testing::Test {
 
 TEST_F(MapIntegrals, ReflectTheAlbedoInAWhiteFurnace) {
     for (const bool exact : {false, true})
-        for (const Bsdf& bsdf : {Bsdf{Lambert{{0.8f, 0.5f, 0.2f}}}, metal(0.07f), metal(0.5f), plastic()}) {
+        for (const Bsdf& bsdf : {Bsdf{Lambert{{0.8f, 0.5f, 0.2f}}}, metal(0.07f), metal(0.5f),
+                                 brushed(0.4f, 0.05f), plastic()}) {
             const MapIntegral integral =
                 integral_of(stage, points, exact, blend_of(white), vertex_of(bsdf, 0.7f));
             const Spectrum reflected = integral.reflected().direct, albedo = integral.albedo();
@@ -106,6 +110,17 @@ TEST_F(MapIntegrals, HaveTheAlbedoOfGlossySurfaces) {  // against sampling the B
                            expected = by_sampling(vertex, nullptr);
             EXPECT_NEAR(albedo.r, expected.r, 0.005f * expected.r) << alpha << " " << view;
             EXPECT_NEAR(albedo.b, expected.b, 0.005f * expected.b) << alpha << " " << view;
+        }
+}
+
+TEST_F(MapIntegrals, HaveTheAlbedoOfBrushedSurfaces) {
+    for (const auto& [x, y] : {std::pair{0.5f, 0.1f}, {0.05f, 0.3f}})
+        for (const float view : {0.95f, 0.6f, 0.3f}) {
+            const Vertex vertex = vertex_of(brushed(x, y), view);
+            const Spectrum albedo = integral_of(stage, points, false, blend_of(white), vertex).albedo(),
+                           expected = by_sampling(vertex, nullptr);
+            EXPECT_NEAR(albedo.r, expected.r, 0.007f * expected.r) << x << " " << y << " " << view;
+            EXPECT_NEAR(albedo.b, expected.b, 0.007f * expected.b) << x << " " << y << " " << view;
         }
 }
 

@@ -82,6 +82,27 @@ HWY_INLINE VF lobe_error(const Vec3s& d, const TierQuery& q, float side2) {
                    squared(hn::Add(t2, constant(1))));
 }
 
+/// The same of a lobe with two roughnesses: of the curvatures along its axes the larger.
+HWY_INLINE VF stretched_lobe_error(const Vec3s& d, const TierQuery& q, float side2) {
+    const F f;
+    const Vec3s half{hn::Add(d.x, constant(q.w_out.x)), hn::Add(d.y, constant(q.w_out.y)),
+                     hn::Add(d.z, constant(q.w_out.z))};
+    const VF z2 = hn::Max(squared(dot(half, q.shading_normal)), constant(1e-12f));
+    const VF length2 = hn::MulAdd(half.x, half.x, hn::MulAdd(half.y, half.y, squared(half.z)));
+    const float inverse_x2 = 1 / sqr(q.alpha_x), inverse_y2 = 1 / sqr(q.alpha_y);
+    const VF x2 = hn::Div(hn::Mul(squared(dot(half, q.axis_x)), constant(inverse_x2)), z2);
+    const VF y2 = hn::Div(hn::Mul(squared(dot(half, q.axis_y)), constant(inverse_y2)), z2);
+    const VF axes =
+        hn::MulAdd(constant(2), hn::Div(constant(1), hn::Max(length2, constant(1e-6f))), constant(0.5f));
+    const auto curvature = [&](VF along, VF across, float inverse_alpha2) {
+        const VF numerator = hn::MulAdd(along, constant(20), hn::MulAdd(across, constant(4), constant(4)));
+        return hn::Mul(numerator, constant(inverse_alpha2));
+    };
+    const VF most = hn::Max(curvature(x2, y2, inverse_x2), curvature(y2, x2, inverse_y2));
+    const VF spread = hn::Add(hn::Add(x2, y2), hn::Set(f, 1));
+    return hn::Div(hn::Mul(hn::Mul(axes, most), constant(side2 / 24)), squared(spread));
+}
+
 void choose_all(const DirectionGrid& grid, const TierQuery& q, std::span<const std::uint16_t> known,
                 std::span<TileTier> tiers) {
     const F f;
@@ -100,7 +121,8 @@ void choose_all(const DirectionGrid& grid, const TierQuery& q, std::span<const s
         auto chosen = hn::Set(i, static_cast<std::int32_t>(q.exact ? TileTier::texels : TileTier::one));
         chosen = hn::IfThenElse(fine, tier(TileTier::texels), chosen);
         if (q.alpha > 0) {
-            const VF error = lobe_error(d, q, side2);
+            const VF error =
+                q.alpha_x == q.alpha_y ? lobe_error(d, q, side2) : stretched_lobe_error(d, q, side2);
             const auto raise = [&](float factor, TileTier t) {
                 chosen =
                     hn::IfThenElse(hn::RebindMask(i, hn::Gt(error, constant(factor * quadrature_tolerance))),

@@ -10,9 +10,11 @@ namespace relumine {
 /// What decides a tile's tier.
 struct TierQuery {
     Vec3 geometric_normal, shading_normal;
-    Vec3 w_out;          // world space
-    float alpha = 0;     // GGX; 0: no specular lobe
-    bool exact = false;  // never one point
+    Vec3 w_out;                      // world space
+    float alpha = 0;                 // GGX; 0: no specular lobe
+    bool exact = false;              // never one point
+    float alpha_x = 0, alpha_y = 0;  // where they differ: α along the lobe's axes
+    Vec3 axis_x, axis_y;             // those axes, world space
 };
 
 /// f·|cos θ| of a receiver, by channel.

@@ -84,6 +84,17 @@ TEST(MapKernel, BlendsTilesOnEveryTarget) {
         });
 }
 
+/// The same of a lobe with two roughnesses: the curvature along the axis where it is larger.
+float stretched_error(Vec3 d, const TierQuery& q, float side2) {
+    const Vec3 half = d + q.w_out;
+    const float z2 = std::max(sqr(dot(half, q.shading_normal)), 1e-12f);
+    const float x2 = sqr(dot(half, q.axis_x) / q.alpha_x) / z2,
+                y2 = sqr(dot(half, q.axis_y) / q.alpha_y) / z2;
+    const float most =
+        std::max((20 * x2 + 4 * y2 + 4) / sqr(q.alpha_x), (20 * y2 + 4 * x2 + 4) / sqr(q.alpha_y));
+    return (0.5f + 2 / length_squared(half)) * most / sqr(1 + x2 + y2) * side2 / 24;
+}
+
 /// The kernel's error of one point per tile, in other words.
 float lobe_error(Vec3 d, const TierQuery& q, float side2) {
     const Vec3 half = normalize(d + q.w_out);
@@ -104,7 +115,9 @@ std::optional<TileTier> tier_of(const DirectionGrid& grid, const TierQuery& q, s
     if (above < -sine) return TileTier::below;
     TileTier tier = q.exact || above < sine || known != whole_tile ? TileTier::texels : TileTier::one;
     if (q.alpha <= 0) return tier;
-    const float error = lobe_error(d, q, grid.texel_solid_angle * 4) / 0.004f;
+    const float side2 = grid.texel_solid_angle * 4;
+    const float error =
+        (q.alpha_x == q.alpha_y ? lobe_error(d, q, side2) : stretched_error(d, q, side2)) / 0.004f;
     const std::array<std::pair<float, TileTier>, 3> steps{
         {{1, TileTier::texels}, {16, TileTier::quarters}, {64, TileTier::sixteenths}}};
     for (const auto& [step, finer] : steps) {
@@ -121,8 +134,22 @@ TEST(MapKernel, ChoosesTiersOnEveryTarget) {
         const Vec3 normal = random_direction(pose, 1).v;
         const Vec3 shading = normalize(normal + random_direction(pose, 3).v * 0.3f);
         const std::array<float, 4> alphas{0, 0.05f, 0.2f, 0.7f};
-        const TierQuery query{normal, shading, normalize(shading + random_direction(pose, 5).v * 0.9f),
-                              alphas[pose % 4], pose % 3 == 0};
+        TierQuery query{normal,
+                        shading,
+                        normalize(shading + random_direction(pose, 5).v * 0.9f),
+                        alphas[pose % 4],
+                        pose % 3 == 0,
+                        0,
+                        0,
+                        {},
+                        {}};
+        if (pose >= 8) {
+            const Frame frame = frame_around(shading);
+            query.alpha_x = query.alpha * 2;
+            query.alpha_y = query.alpha / 2;
+            query.axis_x = frame.s;
+            query.axis_y = frame.t;
+        }
         on_every_target([&] {
             std::vector<TileTier> tiers(c.grid.tiles);
             choose_tiers(c.grid, query, known, tiers);
@@ -141,7 +168,7 @@ TEST(MapKernel, ChoosesTiersOnEveryTarget) {
             if (query.exact) {
                 EXPECT_EQ(met[1], 0);
             }
-            if (query.alpha == 0.05f) {
+            if (query.alpha == 0.05f && query.alpha_x == query.alpha_y) {
                 EXPECT_GT(met[4], 0);
             }
         });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The BSDF kernel: the formulas of shading/metallic_roughness.cpp for as many directions as the machine has
 // lanes.
+#include <array>
+
 #include "cache/receiver_bsdf.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -43,31 +45,66 @@ HWY_INLINE Spectrums schlick(Spectrum f0, Spectrum f90, VF grazing) {
 struct Prepared {
     const ReceiverBsdf& b;
     float a2, lambda_out, scale;       // of the specular lobe: D·G without what follows from w_in
-    float flat, steep, inverse_steep;  // of grazing_albedo
-    Spectrum diffuse;                  // times what the coat lets pass to w_out
+    float squeeze_x, squeeze_y;        // of the axes in the density, against Λ's
+    std::array<float, 3> flat, steep;  // of grazing_albedo, for the mean α and both others
+    std::array<float, 3> inverse_steep;
+    Spectrum diffuse;  // times what the coat lets pass to w_out
 
     explicit Prepared(const ReceiverBsdf& bsdf) : b(bsdf), a2(sqr(bsdf.ggx.alpha)) {
         const Vec3 o = b.w_out.v;
-        lambda_out = 0.5f * (std::sqrt(1 + a2 * (sqr(o.x) + sqr(o.y)) / sqr(o.z)) - 1);
+        lambda_out = 0.5f * (std::sqrt(1 + a2 * stretched2(b.ggx, b.w_out) / sqr(o.z)) - 1);
         scale = a2 * inv_pi / (4 * o.z);
-        flat = std::max(1 - 6 * b.ggx.alpha, 0.0f);
-        steep = 20 * a2 / (b.ggx.alpha + 0.02f);
-        inverse_steep = 1 / steep;
+        squeeze_x = b.ggx.stretch_y;
+        squeeze_y = b.ggx.stretch_x;
+        const std::array<float, 3> alphas = grazing_alphas(b.ggx);
+        for (std::size_t i = 0; i < alphas.size(); ++i) {
+            flat[i] = std::max(1 - 6 * alphas[i], 0.0f);
+            steep[i] = 20 * sqr(alphas[i]) / (alphas[i] + 0.02f);
+            inverse_steep[i] = 1 / steep[i];
+        }
         diffuse = b.diffuse;
         if (b.coated)
             diffuse *=
                 1
-                - std::min(
-                    1.0f,
-                    max_component(b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(o.z, b.ggx.alpha)));
+                - std::min(1.0f,
+                           max_component(b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(o.z, b.ggx)));
     }
 };
 
-/// D·G / (4 cos θ_out) at the half vector with these squared components, not yet divided by the squared
-/// length. One division for those of the density, of Λ and of the masking.
+/// x² + y² with the axes scaled, where lobes are `Stretched`.
+template <bool Stretched>
+HWY_INLINE VF surface_length2(VF x, VF y, float scale_x, float scale_y) {
+    if constexpr (Stretched) {
+        x = hn::Mul(x, constant(scale_x));
+        y = hn::Mul(y, constant(scale_y));
+    }
+    return hn::MulAdd(x, x, squared(y));
+}
+
+/// The coat's grazing albedo.
+template <bool Stretched>
+HWY_INLINE VF grazing_albedo(const Prepared& p, VF cosine) {
+    const VF beside = hn::Min(hn::Max(hn::Sub(constant(1), cosine), constant(1e-3f)), constant(1));
+    const VF beside2 = squared(beside);
+    const auto at = [&](std::size_t i) {
+        // Rough coats are steep alone: no division.
+        const VF whole = p.flat[i] == 0
+                             ? hn::Mul(hn::Mul(beside2, beside), constant(p.inverse_steep[i]))
+                             : hn::Div(hn::Mul(squared(beside2), beside),
+                                       hn::MulAdd(constant(p.steep[i]), beside2, constant(p.flat[i])));
+        return hn::Min(whole, constant(1));
+    };
+    if constexpr (!Stretched) return at(0);
+    return hn::Max(at(0), hn::Max(at(1), at(2)));
+}
+
+/// D·G / (4 cos θ_out) at the half vector with these squared components (the density's), not yet divided by
+/// the squared length. One division for those of the density, of Λ and of the masking.
+template <bool Stretched>
 HWY_INLINE VF lobe(const Prepared& p, const Vec3s& w, VF m_xy2, VF m_z2, VF length2) {
     const VF density_root = hn::MulAdd(constant(p.a2), m_z2, m_xy2);
-    const VF z2 = squared(w.z), xy2 = hn::MulAdd(w.x, w.x, squared(w.y));
+    const VF z2 = squared(w.z);
+    const VF xy2 = surface_length2<Stretched>(w.x, w.y, p.b.ggx.stretch_x, p.b.ggx.stretch_y);
     const VF root = hn::Sqrt(hn::MulAdd(constant(p.a2), xy2, z2));
     // (½ + Λ_in)·cos θ_in = root / 2
     const VF masking = p.b.ggx.masking == Masking::correlated
@@ -77,6 +114,7 @@ HWY_INLINE VF lobe(const Prepared& p, const Vec3s& w, VF m_xy2, VF m_z2, VF leng
                    hn::Mul(squared(density_root), masking));
 }
 
+template <bool Stretched>
 HWY_INLINE Spectrums reflect(const Prepared& p, const Vec3s& w) {
     const ReceiverBsdf& b = p.b;
     const VF cosine = hn::Mul(w.z, constant(inv_pi));
@@ -92,57 +130,61 @@ HWY_INLINE Spectrums reflect(const Prepared& p, const Vec3s& w) {
     const VF grazing = hn::Mul(squared(squared(x)), x);
     VF base = cosine;
     if (b.coated) {
-        const VF beside = hn::Min(hn::Max(hn::Sub(constant(1), w.z), constant(1e-3f)), constant(1));
-        const VF beside2 = squared(beside);
-        // Rough coats are steep alone: no division.
-        const VF whole = p.flat == 0 ? hn::Mul(hn::Mul(beside2, beside), constant(p.inverse_steep))
-                                     : hn::Div(hn::Mul(squared(beside2), beside),
-                                               hn::MulAdd(constant(p.steep), beside2, constant(p.flat)));
-        const VF part = hn::Min(whole, constant(1));
-        const Spectrums coat = schlick(b.coat_f0, b.coat_f90, part);
+        const Spectrums coat = schlick(b.coat_f0, b.coat_f90, grazing_albedo<Stretched>(p, w.z));
         const VF most = hn::Max(coat.r, hn::Max(coat.g, coat.b));
         base = hn::Mul(base, hn::Max(hn::Sub(constant(1), most), constant(0)));
     }
     Spectrums out{hn::Mul(base, constant(p.diffuse.r)), hn::Mul(base, constant(p.diffuse.g)),
                   hn::Mul(base, constant(p.diffuse.b))};
     if (!b.specular) return out;
-    const VF specular = lobe(p, w, m_xy2, m_z2, length2);
+    const VF density_xy2 = Stretched ? surface_length2<Stretched>(m.x, m.y, p.squeeze_x, p.squeeze_y) : m_xy2;
+    const VF specular = lobe<Stretched>(p, w, density_xy2, m_z2, length2);
     const Spectrums fresnel = schlick(b.specular_f0, b.specular_f90, grazing);
     return {hn::MulAdd(specular, fresnel.r, out.r), hn::MulAdd(specular, fresnel.g, out.g),
             hn::MulAdd(specular, fresnel.b, out.b)};
 }
 
+template <bool Stretched>
 HWY_INLINE Spectrums above_horizon(const Prepared& p, const Vec3s& direction) {
     const Vec3s w{dot(direction, p.b.shading_x), dot(direction, p.b.shading_y),
                   dot(direction, p.b.shading_z)};
     const auto above = hn::Gt(w.z, constant(0));
-    const Spectrums s = reflect(p, {w.x, w.y, hn::Max(w.z, constant(1e-7f))});
+    const Spectrums s = reflect<Stretched>(p, {w.x, w.y, hn::Max(w.z, constant(1e-7f))});
     return {hn::IfThenElseZero(above, s.r), hn::IfThenElseZero(above, s.g), hn::IfThenElseZero(above, s.b)};
 }
 
-void evaluate_all(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
+template <bool Stretched>
+HWY_INLINE void evaluate_as(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
     const F f;
     const Prepared prepared(bsdf);
     const std::size_t lanes = hn::Lanes(f), count = w_in.x.size(), whole = count / lanes * lanes;
     std::size_t i = 0;
     for (; i < whole; i += lanes) {
-        const Spectrums s = above_horizon(
+        const Spectrums s = above_horizon<Stretched>(
             prepared, {hn::LoadU(f, &w_in.x[i]), hn::LoadU(f, &w_in.y[i]), hn::LoadU(f, &w_in.z[i])});
         hn::StoreU(s.r, f, &out.r[i]);
         hn::StoreU(s.g, f, &out.g[i]);
         hn::StoreU(s.b, f, &out.b[i]);
     }
     for (; i < count; ++i) {
-        const Spectrums s =
-            above_horizon(prepared, {constant(w_in.x[i]), constant(w_in.y[i]), constant(w_in.z[i])});
+        const Spectrums s = above_horizon<Stretched>(
+            prepared, {constant(w_in.x[i]), constant(w_in.y[i]), constant(w_in.z[i])});
         out.r[i] = hn::GetLane(s.r);
         out.g[i] = hn::GetLane(s.g);
         out.b[i] = hn::GetLane(s.b);
     }
 }
 
-void evaluate_some_cells(const ReceiverBsdf& bsdf, const Directions& centers, const CellMask& wanted,
-                         const SpectrumArrays& out) {
+void evaluate_all(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
+    if (is_anisotropic(bsdf.ggx))
+        evaluate_as<true>(bsdf, w_in, out);
+    else
+        evaluate_as<false>(bsdf, w_in, out);
+}
+
+template <bool Stretched>
+HWY_INLINE void evaluate_cells_as(const ReceiverBsdf& bsdf, const Directions& centers, const CellMask& wanted,
+                                  const SpectrumArrays& out) {
     const F f;
     const Prepared prepared(bsdf);
     constexpr std::size_t side = mask_side / 2;
@@ -150,7 +192,7 @@ void evaluate_some_cells(const ReceiverBsdf& bsdf, const Directions& centers, co
         for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
             if (!cells::any_in_lanes(wanted[y], x)) continue;
             const std::size_t at = y * side + x;
-            const Spectrums s = above_horizon(
+            const Spectrums s = above_horizon<Stretched>(
                 prepared,
                 {hn::LoadU(f, &centers.x[at]), hn::LoadU(f, &centers.y[at]), hn::LoadU(f, &centers.z[at])});
             hn::StoreU(s.r, f, &out.r[at]);
@@ -171,8 +213,9 @@ HWY_INLINE cells::Colors tile_sums(std::span<const std::uint32_t> radiance, cons
             cells::sum_pairs(low.b, high.b)};
 }
 
-void reflect_all_tiles(const ReceiverBsdf& bsdf, const Directions& directions,
-                       std::span<const std::uint32_t> radiance, const Mask& lit, Spectrum& out) {
+template <bool Stretched>
+HWY_INLINE void reflect_tiles_as(const ReceiverBsdf& bsdf, const Directions& directions,
+                                 std::span<const std::uint32_t> radiance, const Mask& lit, Spectrum& out) {
     const F f;
     const Prepared prepared(bsdf);
     constexpr std::size_t side = mask_side / 4;
@@ -185,9 +228,9 @@ void reflect_all_tiles(const ReceiverBsdf& bsdf, const Directions& directions,
             const int column = static_cast<int>(4 * x);
             if ((any.bits(column, half_width) | any.bits(column + half_width, half_width)) == 0) continue;
             const std::size_t at = y * side + x;
-            const Spectrums s =
-                above_horizon(prepared, {hn::LoadU(f, &directions.x[at]), hn::LoadU(f, &directions.y[at]),
-                                         hn::LoadU(f, &directions.z[at])});
+            const Spectrums s = above_horizon<Stretched>(
+                prepared, {hn::LoadU(f, &directions.x[at]), hn::LoadU(f, &directions.y[at]),
+                           hn::LoadU(f, &directions.z[at])});
             const cells::Colors light = tile_sums(radiance, lit, y, x);
             sum = {hn::MulAdd(light.r, s.r, sum.r), hn::MulAdd(light.g, s.g, sum.g),
                    hn::MulAdd(light.b, s.b, sum.b)};
@@ -197,10 +240,27 @@ void reflect_all_tiles(const ReceiverBsdf& bsdf, const Directions& directions,
            hn::GetLane(hn::SumOfLanes(f, sum.b))};
 }
 
+void evaluate_some_cells(const ReceiverBsdf& bsdf, const Directions& centers, const CellMask& wanted,
+                         const SpectrumArrays& out) {
+    if (is_anisotropic(bsdf.ggx))
+        evaluate_cells_as<true>(bsdf, centers, wanted, out);
+    else
+        evaluate_cells_as<false>(bsdf, centers, wanted, out);
+}
+
+void reflect_all_tiles(const ReceiverBsdf& bsdf, const Directions& directions,
+                       std::span<const std::uint32_t> radiance, const Mask& lit, Spectrum& out) {
+    if (is_anisotropic(bsdf.ggx))
+        reflect_tiles_as<true>(bsdf, directions, radiance, lit, out);
+    else
+        reflect_tiles_as<false>(bsdf, directions, radiance, lit, out);
+}
+
 /// `radiance`: null for 1 everywhere.
-void evaluate_all_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
-                        const RadianceRuns* radiance, std::size_t per_texel,
-                        std::span<const std::uint32_t> tiles, const SpectrumArrays& out) {
+template <bool Stretched>
+HWY_INLINE void evaluate_tiles_as(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
+                                  const RadianceRuns* radiance, std::size_t per_texel,
+                                  std::span<const std::uint32_t> tiles, const SpectrumArrays& out) {
     const F f;
     const Prepared prepared(bsdf);
     const VF share = constant(1 / static_cast<float>(per_texel));
@@ -212,7 +272,7 @@ void evaluate_all_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRu
                 const Vec3s w{hn::LoadU(f, &points.x[at]), hn::LoadU(f, &points.y[at]),
                               hn::LoadU(f, &points.z[at])};
                 const VF factor = hn::IfThenElseZero(hn::Gt(dot(w, normal), hn::Zero(f)), share);
-                const Spectrums s = above_horizon(prepared, w);
+                const Spectrums s = above_horizon<Stretched>(prepared, w);
                 r = hn::MulAdd(s.r, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->r[at])) : factor, r);
                 g = hn::MulAdd(s.g, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->g[at])) : factor, g);
                 b = hn::MulAdd(s.b, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->b[at])) : factor, b);
@@ -221,6 +281,15 @@ void evaluate_all_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRu
             hn::StoreU(g, f, &out.g[16 * k + lane]);
             hn::StoreU(b, f, &out.b[16 * k + lane]);
         }
+}
+
+void evaluate_all_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
+                        const RadianceRuns* radiance, std::size_t per_texel,
+                        std::span<const std::uint32_t> tiles, const SpectrumArrays& out) {
+    if (is_anisotropic(bsdf.ggx))
+        evaluate_tiles_as<true>(bsdf, normal, points, radiance, per_texel, tiles, out);
+    else
+        evaluate_tiles_as<false>(bsdf, normal, points, radiance, per_texel, tiles, out);
 }
 
 }  // namespace

@@ -26,9 +26,16 @@ TEST(ReceiverBsdfKernel, AgreesWithTheBsdfsOnEveryTarget) {
                               Spectrum{1},        rough,           false};
     MetallicRoughness coat_alone = plastic;
     coat_alone.smooth = true;
-    const std::array<Bsdf, 5> bsdfs{Lambert{{0.7f, 0.5f, 0.2f}}, RoughConductor{{0.9f, 0.6f, 0.3f}, sharp},
-                                    RoughConductor{{0.9f, 0.6f, 0.3f}, rough}, plastic,
-                                    without_delta(coat_alone)};
+    MetallicRoughness stretched = plastic;
+    stretched.ggx = make_ggx(0.7f, 0.05f, Masking::correlated);
+    const std::array<Bsdf, 7> bsdfs{
+        Lambert{{0.7f, 0.5f, 0.2f}},
+        RoughConductor{{0.9f, 0.6f, 0.3f}, sharp},
+        RoughConductor{{0.9f, 0.6f, 0.3f}, rough},
+        plastic,
+        without_delta(coat_alone),
+        RoughConductor{{0.9f, 0.6f, 0.3f}, make_ggx(0.1f, 0.5f, Masking::separable)},
+        stretched};
     constexpr std::size_t count = 1003;  // no multiple of any number of lanes
     const Frame receiver = frame_around({0, 0, 1});
     on_every_target([&] {

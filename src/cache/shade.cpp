@@ -13,7 +13,7 @@ namespace relumine {
 namespace {
 
 constexpr std::size_t fine_points = 16;  // per fine cell: 4 in each of its bits
-constexpr float narrow_lobe = 0.3f;      // GGX alpha; wider lobes vary little within a cell
+constexpr float narrow_lobe = 0.3f;      // GGX α along either axis; wider lobes vary little within a cell
 constexpr float wide_lobe = 0.4f;        // still wider ones, little within 2 × 2 cells
 constexpr float greatest_curvature =
     0.3f;  // of the BSDF over a cell, against its value, before the cell counts as fine
@@ -111,7 +111,9 @@ void refine(const ReceiverBsdf& bsdf, BsdfTable& table) {
     for (const std::uint32_t cell : table.fine_cells) table.r[cell] = table.g[cell] = table.b[cell] = 0;
 }
 
-bool is_as_wide(const ReceiverBsdf& bsdf, float alpha) { return !bsdf.specular || bsdf.ggx.alpha >= alpha; }
+bool is_as_wide(const ReceiverBsdf& bsdf, float alpha) {
+    return !bsdf.specular || least_alpha(bsdf.ggx) >= alpha;
+}
 
 Spectrum fine_cell_sum(const std::vector<std::uint32_t>& radiance, const Mask& lit, const BsdfTable& table,
                        std::size_t fine) {

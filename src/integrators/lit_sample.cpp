@@ -21,10 +21,18 @@ bool same_place(const GatherPoint& a, const GatherPoint& b, float footprint) {
            && std::abs(dot(b.position - a.position, a.frame.n)) <= footprint;
 }
 
+/// Stretched by the same and in the same direction; axes have no sign.
+bool same_orientation(const ReceiverBsdf& a, const ReceiverBsdf& b) {
+    if (!is_anisotropic(a.ggx) && !is_anisotropic(b.ggx)) return true;
+    return std::abs(a.ggx.stretch_x - b.ggx.stretch_x) <= alike * a.ggx.stretch_x
+           && std::abs(dot(a.shading_x, b.shading_x)) >= least_cosine;
+}
+
 bool same_lobes(const ReceiverBsdf& a, const ReceiverBsdf& b) {
-    return std::abs(a.ggx.alpha - b.ggx.alpha) <= alike * a.ggx.alpha && near(a.diffuse, b.diffuse)
-           && near(a.specular_f0, b.specular_f0) && near(a.specular_f90, b.specular_f90)
-           && near(a.coat_f0, b.coat_f0) && near(a.coat_f90, b.coat_f90);
+    return same_orientation(a, b) && std::abs(a.ggx.alpha - b.ggx.alpha) <= alike * a.ggx.alpha
+           && near(a.diffuse, b.diffuse) && near(a.specular_f0, b.specular_f0)
+           && near(a.specular_f90, b.specular_f90) && near(a.coat_f0, b.coat_f0)
+           && near(a.coat_f90, b.coat_f90);
 }
 
 /// Whether b / a makes sense in every channel.

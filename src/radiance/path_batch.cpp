@@ -143,8 +143,10 @@ bool PathBatch::arrive(WalkPacket& packet, std::size_t i) {
         const SurfacePoint point = surface_point(t_.scene, hit, {-paths.ray.direction[i]});
         add_emission(packet, i, &point);
     }
-    triangles_.set(i, shading_triangle(t_.scene, hit), hit, paths.ray.direction[i]);
+    const ShadingTriangle triangle = shading_triangle(t_.scene, hit);
+    triangles_.set(i, triangle, hit, paths.ray.direction[i]);
     layers_.set(i, *layers);
+    if (is_anisotropic(layers->ggx)) set_anisotropy(i, triangle.lobe_axis, layers->ggx, triangles_, layers_);
     layers_.specular = layers_.specular || !is_black(layers->specular_f90);
     return true;
 }
@@ -199,7 +201,7 @@ void PathBatch::step(WalkPacket& packet) {
     const StepNumbers numbers(packet.samples, depth_, t_.tracer.asks_for_opacity());
     LaneMask plain{}, other{};
     bool any_plain = false;
-    layers_.specular = false;
+    layers_.specular = layers_.stretched = triangles_.oriented = false;
     for (std::size_t i = 0; i < packet_size; ++i) {
         if (paths.alive[i] == 0) continue;
         if (paths.hit.instance[i] == no_instance) {

@@ -30,6 +30,15 @@ HWY_INLINE Frames frame_around(V3 n) {
             n};
 }
 
+/// frame_along where that has a direction, else `other`.
+HWY_INLINE Frames frame_along(V3 n, V3 direction, const Frames& other) {
+    const V3 s = direction - n * dot(n, direction);
+    const VF length2 = dot(s, s);
+    const Mask known = hn::Gt(length2, constant(1e-12f) * dot(direction, direction));
+    const V3 unit_s = s / hn::Sqrt(length2);
+    return {select(known, unit_s, other.s), select(known, cross(n, unit_s), other.t), n};
+}
+
 HWY_INLINE V3 keep_viewer_above(V3 n, V3 w_out) {
     const VF least = constant(min_view_cosine), cosine = dot(n, w_out);
     const Mask above = hn::Ge(cosine, least);
@@ -60,10 +69,11 @@ HWY_INLINE Mask sides_agree(const Vertices& v, V3 w_in) {
     return hn::Not(hn::Xor(geometric, hn::Gt(dot(w_in, v.frame.n), zero())));
 }
 
-/// One vector of BSDFs.
+/// One vector of BSDFs. Where no lobe is `Stretched` there is nothing to multiply.
+template <bool Stretched>
 struct Layers {
     V3 diffuse, coat_f0, coat_f90, specular_f0, specular_f90;
-    VF alpha;
+    VF alpha, stretch_x, stretch_y;
     Mask separable;
 
     HWY_INLINE Layers(const LayerLanes& b, std::size_t i)
@@ -73,7 +83,30 @@ struct Layers {
           specular_f0(load(b.specular_f0, i)),
           specular_f90(load(b.specular_f90, i)),
           alpha(load(b.alpha, i)),
+          stretch_x(Stretched ? load(b.stretch_x, i) : constant(1)),
+          stretch_y(Stretched ? load(b.stretch_y, i) : constant(1)),
           separable(load(b.separable, i)) {}
+
+    [[nodiscard]] HWY_INLINE VF along_x(VF x) const {
+        if constexpr (Stretched) return stretch_x * x;
+        return x;
+    }
+    [[nodiscard]] HWY_INLINE VF along_y(VF y) const {
+        if constexpr (Stretched) return stretch_y * y;
+        return y;
+    }
+    /// stretched2
+    [[nodiscard]] HWY_INLINE VF stretched2(V3 w) const {
+        return squared(along_x(w.x)) + squared(along_y(w.y));
+    }
+    [[nodiscard]] HWY_INLINE V3 roughened(V3 v) const {
+        if constexpr (Stretched) return {alpha * stretch_x * v.x, alpha * stretch_y * v.y, v.z};
+        return {alpha * v.x, alpha * v.y, v.z};
+    }
+    [[nodiscard]] HWY_INLINE VF least_alpha() const {
+        if constexpr (Stretched) return alpha * hn::Min(stretch_x, stretch_y);
+        return alpha;
+    }
 };
 
 HWY_INLINE V3 schlick(V3 f0, V3 f90, VF cosine) {
@@ -88,40 +121,61 @@ HWY_INLINE VF grazing_albedo(VF cosine, VF alpha) {
     return hn::Min(squared(x2) * x / (flat + steep * x2), constant(1));
 }
 
-HWY_INLINE VF coat_transmittance(const Layers& b, VF cosine) {
-    const V3 reflected = b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(cosine, b.alpha);
+template <bool Stretched>
+HWY_INLINE VF grazing_albedo(const Layers<Stretched>& b, VF cosine) {
+    const VF mean = grazing_albedo(cosine, b.alpha);
+    if constexpr (!Stretched) return mean;
+    const VF rough = b.alpha * hn::Max(b.stretch_x, b.stretch_y);
+    const VF sharp = hn::Max(constant(0.8f) * b.least_alpha(), constant(0.06f) * rough);
+    const VF most = hn::Max(hn::Max(mean, grazing_albedo(cosine, sharp)), grazing_albedo(cosine, rough));
+    return select(hn::Eq(b.stretch_x, constant(1)), mean, most);
+}
+
+template <bool Stretched>
+HWY_INLINE VF coat_transmittance(const Layers<Stretched>& b, VF cosine) {
+    const V3 reflected = b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(b, cosine);
     return constant(1) - hn::Min(constant(1), max_component(reflected));
 }
 
-HWY_INLINE VF specular_probability(const Layers& b, V3 w_out) {
+template <bool Stretched>
+HWY_INLINE VF specular_probability(const Layers<Stretched>& b, V3 w_out) {
     const VF specular = max_component(schlick(b.specular_f0, b.specular_f90, w_out.z));
     const VF diffuse = max_component(b.diffuse) * coat_transmittance(b, w_out.z);
     const VF share = hn::Min(hn::Max(specular / (specular + diffuse), constant(0.1f)), constant(0.9f));
     return select(hn::Le(specular, zero()), zero(), select(hn::Le(diffuse, zero()), constant(1), share));
 }
 
-HWY_INLINE VF ggx_density(VF a2, V3 m) {
-    return a2 * constant(inv_pi) / squared(a2 * squared(m.z) + squared(m.x) + squared(m.y));
+template <bool Stretched>
+HWY_INLINE VF ggx_density(const Layers<Stretched>& b, V3 m) {
+    const VF a2 = squared(b.alpha);
+    V3 squeezed = m;
+    if constexpr (Stretched) squeezed = {b.stretch_y * m.x, b.stretch_x * m.y, m.z};
+    return a2 * constant(inv_pi) / squared(a2 * squared(m.z) + squared(squeezed.x) + squared(squeezed.y));
 }
 
-HWY_INLINE VF ggx_lambda(VF a2, V3 w) {
-    const VF tan2 = (squared(w.x) + squared(w.y)) / squared(w.z);
-    return constant(0.5f) * (hn::Sqrt(constant(1) + a2 * tan2) - constant(1));
+template <bool Stretched>
+HWY_INLINE VF ggx_lambda(const Layers<Stretched>& b, V3 w) {
+    const VF tan2 = b.stretched2(w) / squared(w.z);
+    return constant(0.5f) * (hn::Sqrt(constant(1) + squared(b.alpha) * tan2) - constant(1));
 }
 
-HWY_INLINE VF ggx_masking_shadowing(const Layers& b, VF a2, V3 w_out, V3 w_in) {
-    const VF lambda_out = ggx_lambda(a2, w_out), lambda_in = ggx_lambda(a2, w_in), one = constant(1);
+template <bool Stretched>
+HWY_INLINE VF ggx_masking_shadowing(const Layers<Stretched>& b, V3 w_out, V3 w_in) {
+    const VF lambda_out = ggx_lambda(b, w_out), lambda_in = ggx_lambda(b, w_in), one = constant(1);
     return one / select(b.separable, (one + lambda_out) * (one + lambda_in), one + lambda_out + lambda_in);
 }
 
-HWY_INLINE VF reflection_bound(VF a2, V3 w_out) {
+template <bool Stretched>
+HWY_INLINE VF reflection_bound(const Layers<Stretched>& b, V3 w_out) {
+    const VF a2 = squared(b.least_alpha());
     const VF s2 = squared(constant(1) + hn::Sqrt(squared(w_out.x) + squared(w_out.y)));
     return (constant(1) - a2) * s2 / (s2 + a2 * squared(w_out.z));
 }
 
-HWY_INLINE VF reflection_pdf(VF a2, V3 w_out, VF density) {
-    const VF stretched_length = hn::Sqrt(a2 * (squared(w_out.x) + squared(w_out.y)) + squared(w_out.z));
-    return density / (constant(2) * (reflection_bound(a2, w_out) * w_out.z + stretched_length));
+template <bool Stretched>
+HWY_INLINE VF reflection_pdf(const Layers<Stretched>& b, V3 w_out, VF density) {
+    const VF stretched_length = hn::Sqrt(squared(b.alpha) * b.stretched2(w_out) + squared(w_out.z));
+    return density / (constant(2) * (reflection_bound(b, w_out) * w_out.z + stretched_length));
 }
 
 struct Values {
@@ -129,20 +183,22 @@ struct Values {
     VF pdf;
 };
 
-HWY_INLINE Values evaluate_layers(const Layers& b, V3 w_out, V3 w_in, VF probability) {
+template <bool Stretched>
+HWY_INLINE Values evaluate_layers(const Layers<Stretched>& b, V3 w_out, V3 w_in, VF probability) {
     const V3 m = normalize(w_out + w_in);
-    const VF cosine = dot(w_in, m), diffuse_pdf = w_in.z * constant(inv_pi), a2 = squared(b.alpha);
+    const VF cosine = dot(w_in, m), diffuse_pdf = w_in.z * constant(inv_pi);
     const V3 diffuse =
         b.diffuse * (diffuse_pdf * coat_transmittance(b, w_out.z) * coat_transmittance(b, w_in.z));
-    const VF density = ggx_density(a2, m);
+    const VF density = ggx_density(b, m);
     const V3 specular = schlick(b.specular_f0, b.specular_f90, cosine)
-                        * (density * ggx_masking_shadowing(b, a2, w_out, w_in) / (constant(4) * w_out.z));
+                        * (density * ggx_masking_shadowing(b, w_out, w_in) / (constant(4) * w_out.z));
     return {diffuse + specular,
-            (constant(1) - probability) * diffuse_pdf + probability * reflection_pdf(a2, w_out, density)};
+            (constant(1) - probability) * diffuse_pdf + probability * reflection_pdf(b, w_out, density)};
 }
 
 /// `evaluate` of the BSDF; what is below the surface counts as black.
-HWY_INLINE Values evaluate(const Layers& b, bool specular, V3 w_out, V3 w_in, VF probability) {
+template <bool Stretched>
+HWY_INLINE Values evaluate(const Layers<Stretched>& b, bool specular, V3 w_out, V3 w_in, VF probability) {
     const Mask above = hn::Gt(w_in.z, zero());
     const VF diffuse_pdf = w_in.z * constant(inv_pi);
     Values v{b.diffuse * diffuse_pdf, diffuse_pdf};
@@ -206,10 +262,11 @@ HWY_INLINE V3 sample_cap(VF lowest, VF u_x, VF u_y) {
     return {r * cosine, r * sine, z};
 }
 
-HWY_INLINE V3 sample_reflection(VF alpha, V3 w_out, VF u_x, VF u_y) {
-    const V3 stretched = normalize({alpha * w_out.x, alpha * w_out.y, w_out.z});
-    const V3 m = sample_cap(reflection_bound(squared(alpha), w_out) * stretched.z, u_x, u_y) + stretched;
-    const V3 normal = normalize({alpha * m.x, alpha * m.y, hn::Max(m.z, constant(1e-12f))});
+template <bool Stretched>
+HWY_INLINE V3 sample_reflection(const Layers<Stretched>& b, V3 w_out, VF u_x, VF u_y) {
+    const V3 stretched = normalize(b.roughened(w_out));
+    const V3 m = sample_cap(reflection_bound(b, w_out) * stretched.z, u_x, u_y) + stretched;
+    const V3 normal = normalize(b.roughened({m.x, m.y, hn::Max(m.z, constant(1e-12f))}));
     return normal * (constant(2) * dot(w_out, normal)) - w_out;
 }
 
@@ -218,17 +275,18 @@ struct Scattered {
     VF pdf;  // 0: absorbed
 };
 
-HWY_INLINE Scattered sample_diffuse(const Layers& b, VF u_x, VF u_y) {
+template <bool Stretched>
+HWY_INLINE Scattered sample_diffuse(const Layers<Stretched>& b, VF u_x, VF u_y) {
     const V3 w_in = cosine_hemisphere(u_x, u_y);
     return {w_in, b.diffuse, hn::IfThenElseZero(hn::Gt(w_in.z, zero()), w_in.z * constant(inv_pi))};
 }
 
-HWY_INLINE Scattered sample(const Layers& b, bool specular, V3 w_out, VF lobe, VF u_x, VF u_y) {
+template <bool Stretched>
+HWY_INLINE Scattered sample(const Layers<Stretched>& b, bool specular, V3 w_out, VF lobe, VF u_x, VF u_y) {
     const Scattered diffuse = sample_diffuse(b, u_x, u_y);
     if (!specular) return diffuse;
     const VF probability = specular_probability(b, w_out);
-    const V3 w_in =
-        select(hn::Lt(lobe, probability), sample_reflection(b.alpha, w_out, u_x, u_y), diffuse.w_in);
+    const V3 w_in = select(hn::Lt(lobe, probability), sample_reflection(b, w_out, u_x, u_y), diffuse.w_in);
     const Values v = evaluate(b, true, w_out, w_in, probability);
     const Mask lambert = hn::Eq(probability, zero());
     return {w_in, select(lambert, b.diffuse, v.value / v.pdf), select(lambert, diffuse.pdf, v.pdf)};
@@ -249,7 +307,9 @@ void locate_lanes(const TriangleLanes& in, VertexLanes& out) {
         V3 n = select(smooth, normalize(normal), front_normal);
         n = select(front, n, -n);
         n = select(hn::Lt(dot(n, geometric_normal), zero()), -n, n);
-        const Frames frame = frame_around(keep_viewer_above(n, w_out));
+        n = keep_viewer_above(n, w_out);
+        Frames frame = frame_around(n);
+        if (in.oriented) frame = frame_along(n, load(in.lobe_axis, i), frame);
         store(frame.s, out.s, i);
         store(frame.t, out.t, i);
         store(frame.n, out.n, i);
@@ -270,11 +330,12 @@ HWY_INLINE void store_shadow_rays(const Vertices& vertex, const LightLanes& ligh
     store(select(wanted, select(finite, distance, endless), constant(-1)), rays.t_max, i);
 }
 
-void propose_lanes(const VertexLanes& vertices, const LayerLanes& layers, const LightLanes& lights,
-                   const SpectrumLanes& throughput, ShadowLanes& shadows) {
+template <bool Stretched>
+HWY_NOINLINE void propose_all(const VertexLanes& vertices, const LayerLanes& layers, const LightLanes& lights,
+                              const SpectrumLanes& throughput, ShadowLanes& shadows) {
     for (std::size_t i = 0; i < packet_size; i += hn::Lanes(F())) {
         const Vertices vertex(vertices, i);
-        const Layers bsdf(layers, i);
+        const Layers<Stretched> bsdf(layers, i);
         const V3 w_in = load(lights.w_in, i), w_local = to_local(vertex.frame, w_in);
         const VF light_pdf = load(lights.pdf, i), one = constant(1);
         const VF probability = layers.specular ? specular_probability(bsdf, vertex.w_out) : zero();
@@ -287,6 +348,14 @@ void propose_lanes(const VertexLanes& vertices, const LayerLanes& layers, const 
         store(load(throughput, i) * (reflected * weight), shadows.radiance, i);
         store_shadow_rays(vertex, lights, w_in, wanted, shadows.rays, i);
     }
+}
+
+void propose_lanes(const VertexLanes& vertices, const LayerLanes& layers, const LightLanes& lights,
+                   const SpectrumLanes& throughput, ShadowLanes& shadows) {
+    if (layers.stretched)
+        propose_all<true>(vertices, layers, lights, throughput, shadows);
+    else
+        propose_all<false>(vertices, layers, lights, throughput, shadows);
 }
 
 struct Survival {
@@ -303,13 +372,15 @@ HWY_INLINE Survival survive(const ScatterNumbers& numbers, const PathLanes& path
             throughput * (constant(1) / survival)};
 }
 
-void scatter_lanes(const VertexLanes& vertices, const LayerLanes& layers, const ScatterNumbers& numbers,
-                   const LaneMask& lanes, PathLanes& paths) {
+template <bool Stretched>
+HWY_NOINLINE void scatter_all(const VertexLanes& vertices, const LayerLanes& layers,
+                              const ScatterNumbers& numbers, const LaneMask& lanes, PathLanes& paths) {
     for (std::size_t i = 0; i < packet_size; i += hn::Lanes(F())) {
         const Mask wanted = load(lanes, i);
         const Vertices vertex(vertices, i);
-        const Scattered s = sample(Layers(layers, i), layers.specular, vertex.w_out, load(numbers.lobe, i),
-                                   load(numbers.direction_x, i), load(numbers.direction_y, i));
+        const Scattered s =
+            sample(Layers<Stretched>(layers, i), layers.specular, vertex.w_out, load(numbers.lobe, i),
+                   load(numbers.direction_x, i), load(numbers.direction_y, i));
         const V3 w_in = to_world(vertex.frame, s.w_in), before = load(paths.throughput, i);
         V3 throughput = before * s.weight;
         Mask alive = hn::And(wanted, hn::AndNot(is_black(s.weight), hn::Gt(s.pdf, zero())));
@@ -327,6 +398,14 @@ void scatter_lanes(const VertexLanes& vertices, const LayerLanes& layers, const 
         store(select(wanted, unlimited, load(paths.ray.t_max, i)), paths.ray.t_max, i);
         store(hn::Or(alive, hn::AndNot(wanted, load(paths.alive, i))), paths.alive, i);
     }
+}
+
+void scatter_lanes(const VertexLanes& vertices, const LayerLanes& layers, const ScatterNumbers& numbers,
+                   const LaneMask& lanes, PathLanes& paths) {
+    if (layers.stretched)
+        scatter_all<true>(vertices, layers, numbers, lanes, paths);
+    else
+        scatter_all<false>(vertices, layers, numbers, lanes, paths);
 }
 
 }  // namespace

@@ -47,6 +47,19 @@ void TriangleLanes::set(std::size_t i, const ShadingTriangle& triangle, const Hi
     ray_direction.set(i, direction);
 }
 
+void set_anisotropy(std::size_t i, Vec3 lobe_axis, const Ggx& ggx, TriangleLanes& triangles,
+                    LayerLanes& layers) {
+    if (!layers.stretched) {
+        layers.stretched = triangles.oriented = true;
+        layers.stretch_x.fill(1);
+        layers.stretch_y.fill(1);
+        triangles.lobe_axis = {};
+    }
+    layers.stretch_x[i] = ggx.stretch_x;
+    layers.stretch_y[i] = ggx.stretch_y;
+    triangles.lobe_axis.set(i, lobe_axis);
+}
+
 void LayerLanes::set(std::size_t i, const MetallicRoughness& layers) {
     diffuse.set(i, layers.diffuse);
     coat_f0.set(i, layers.coat_f0);

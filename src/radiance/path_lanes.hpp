@@ -30,8 +30,10 @@ struct TriangleLanes {
     std::array<Vec3Lanes, 3> corners;
     Vec3Lanes normal;         // of ShadingTriangle
     Lanes<float> u, v;        // barycentric weights of the second and third corner
+    Vec3Lanes lobe_axis;      // where `oriented`: of ShadingTriangle
     Lanes<float> winding{};   // −1 where the order of the corners is reversed, else 1
     Vec3Lanes ray_direction;  // towards the surface
+    bool oriented = false;    // whether any lane has a lobe axis
 
     void set(std::size_t lane, const ShadingTriangle& triangle, const Hit& hit, Vec3 direction);
 };
@@ -47,10 +49,17 @@ struct LayerLanes {
     SpectrumLanes diffuse, coat_f0, coat_f90, specular_f0, specular_f90;
     Lanes<float> alpha;
     LaneMask separable;
-    bool specular = false;  // whether any lane has more than the diffuse base
+    Lanes<float> stretch_x, stretch_y;  // where `stretched`
+    bool specular = false;              // whether any lane has more than the diffuse base
+    bool stretched = false;             // whether any lane's lobe is anisotropic
 
     void set(std::size_t lane, const MetallicRoughness& layers);
 };
+
+/// What `set` of both leaves out for a lane with an anisotropic lobe. After the first such lane all others
+/// are isotropic until they are set so; `oriented` and `stretched` are the caller's to take back together.
+void set_anisotropy(std::size_t lane, Vec3 lobe_axis, const Ggx& ggx, TriangleLanes& triangles,
+                    LayerLanes& layers);
 
 /// Light that each path will have received if nothing blocks its ray.
 struct ShadowLanes {

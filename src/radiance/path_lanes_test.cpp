@@ -14,7 +14,7 @@ namespace {
 
 using testing::on_every_target;
 
-constexpr std::uint64_t packets = 200;
+constexpr std::uint64_t packets = 120;
 
 float uniform(std::uint64_t i, std::uint64_t what, float low = 0, float high = 1) {
     return low + (high - low) * unit_float(static_cast<std::uint32_t>(hash(i, what)));
@@ -29,17 +29,20 @@ constexpr std::uint32_t triangles_per_mesh = 8;
 /// know, two of which shine, under a sky.
 class Disorder {
   public:
-    explicit Disorder(Masking masking) {
+    explicit Disorder(Masking masking, float anisotropy = 1) {
         scene_.bounds.add({-3, -3, -3});
         scene_.bounds.add({3, 3, 3});
         add_mesh({.metallic = 0, .specular = 0}, false);        // Lambert
         add_mesh({.metallic = 1, .roughness = 0.4f}, true);     // metal
         add_mesh({.metallic = 0.5f, .roughness = 0.6f}, true);  // layers
         add_mesh({.metallic = 0.3f, .roughness = 0.5f, .specular = 0}, false);
+        add_mesh({.metallic = 1, .roughness = 0.3f, .anisotropy = 0.7f * anisotropy}, true);
+        add_mesh({.metallic = 0.4f, .roughness = 0.5f, .anisotropy = 0.5f * anisotropy, .rotation = 0.6f},
+                 false);
         add_mesh({.metallic = 0, .emission = Spectrum{2}, .specular = 0}, false);
         add_mesh({.metallic = 0, .emission = Spectrum{1}, .double_sided = true, .specular = 0}, false);
         for (Instance& instance : scene_.instances) instance.identity = true;
-        for (const std::uint32_t mesh : {1u, 4u}) add_mirrored(mesh);
+        for (const std::uint32_t mesh : {1u, 4u, 6u}) add_mirrored(mesh);
         scene_.environment = Environment{4, 2, {8, Spectrum{0.5f}}, 0};
         scene_.environment->radiance[2] = Spectrum{5};
         const FlushDenormals flush;
@@ -68,7 +71,7 @@ class Disorder {
         float metallic = 0, roughness = 1;
         Spectrum emission{};
         bool double_sided = false;
-        float specular = 1;
+        float specular = 1, anisotropy = 0, rotation = 0;
     };
     void add_mesh(const Look& look, bool normals) {
         const auto seed = std::uint64_t{100} * scene_.meshes.size() + 1000;
@@ -79,6 +82,8 @@ class Disorder {
         material.emission = look.emission;
         material.double_sided = look.double_sided;
         material.specular = look.specular;
+        material.anisotropy = look.anisotropy;
+        material.anisotropy_rotation = look.rotation;
         Mesh mesh;
         mesh.material = MaterialId{static_cast<std::uint32_t>(scene_.materials.size())};
         for (std::uint32_t t = 0; t < triangles_per_mesh; ++t) {
@@ -86,6 +91,11 @@ class Disorder {
             for (std::uint64_t corner = 0; corner < 3; ++corner) {
                 mesh.positions.push_back(center + random_vector(seed + t, 4 + 3 * corner));
                 if (normals) mesh.normals.push_back(normalize(random_vector(seed + t, 20 + 3 * corner)));
+                const Vec3 u = random_vector(seed + t, 40 + 3 * corner), along = normalize(u);
+                if (look.anisotropy > 0 && normals)
+                    mesh.tangents.push_back({along.x, along.y, along.z, t % 2 == 0 ? 1.0f : -1.0f});
+                if (look.anisotropy > 0 && t < 6) mesh.uvs[0].push_back({u.x, u.y});
+                if (look.anisotropy > 0 && t >= 6) mesh.uvs[0].push_back({});  // no direction
             }
             mesh.triangles.push_back({{3 * t, 3 * t + 1, 3 * t + 2}});
         }
@@ -127,10 +137,13 @@ struct Packet {
             paths[i] = scene.random_path(key);
             vertices.push_back(make_vertex(t, paths[i], {}));
             lanes.set(i, paths[i]);
-            triangles.set(i, shading_triangle(t.scene, paths[i].hit), paths[i].hit, paths[i].ray.direction.v);
+            const ShadingTriangle triangle = shading_triangle(t.scene, paths[i].hit);
+            triangles.set(i, triangle, paths[i].hit, paths[i].ray.direction.v);
             const MetallicRoughness* found = t.uniform_bsdfs.find_layers(
                 t.scene.meshes[index(t.scene.instances[paths[i].hit.instance].mesh)].material);
             layers.set(i, *found);
+            if (is_anisotropic(found->ggx))
+                set_anisotropy(i, triangle.lobe_axis, found->ggx, triangles, layers);
             layers.specular = layers.specular || !is_black(found->specular_f90);
             numbers.lobe[i] = uniform(key, 20);
             numbers.direction_x[i] = uniform(key, 21);
@@ -145,12 +158,19 @@ struct Packet {
 /// Runs `check(scene, packet)` for many packets on every instruction set.
 template <typename Check>
 void for_random_packets(const Check& check) {
-    for (const Masking masking : {Masking::correlated, Masking::separable}) {
-        const Disorder scene(masking);
-        on_every_target([&] {
-            for (std::uint64_t seed = 0; seed < packets; ++seed) check(scene, Packet(scene, seed));
-        });
-    }
+    for (const Masking masking : {Masking::correlated, Masking::separable})
+        for (const float anisotropy : {0.0f, 1.0f}) {
+            const Disorder scene(masking, anisotropy);
+            int stretched = 0;
+            on_every_target([&] {
+                for (std::uint64_t seed = 0; seed < packets; ++seed) {
+                    const Packet packet(scene, seed);
+                    stretched += packet.layers.stretched && packet.triangles.oriented ? 1 : 0;
+                    check(scene, packet);
+                }
+            });
+            EXPECT_EQ(stretched > 0, anisotropy > 0);
+        }
 }
 
 TEST(PathLanes, VerticesHaveTheBitsOfSurfacePoints) {

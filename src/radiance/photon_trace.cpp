@@ -21,10 +21,17 @@ constexpr float coat_share = 0.05f;  // of the photons of a mirror: what a diele
 /// What shading normals may do to a photon's flux at a vertex: grazing ones would make it arbitrarily strong.
 constexpr float most_correction = 8;
 
+/// What LobeSplit has as α is no less, but where a texture makes surfaces smoother.
+float least_mean_alpha(const Material& m) {
+    const float alpha = sqr(m.roughness);
+    if (!is_anisotropic(m) || m.anisotropy_texture) return alpha;
+    return std::sqrt(alpha * lerp(alpha, 1.0f, sqr(m.anisotropy)));
+}
+
 bool may_be_specular(const Material& m) {
     if (!is_black(m.diffuse_transmission)) return false;
-    if (m.coated_diffuse) return m.specular > 0 && sqr(m.roughness) < caustic_alpha;
-    if (!m.metallic_roughness_texture && sqr(m.roughness) >= caustic_alpha) return false;
+    if (m.coated_diffuse) return m.specular > 0 && least_mean_alpha(m) < caustic_alpha;
+    if (!m.metallic_roughness_texture && least_mean_alpha(m) >= caustic_alpha) return false;
     return m.transmission > 0 || m.metallic > 0 || m.specular > 0;
 }
 

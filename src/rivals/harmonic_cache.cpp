@@ -69,7 +69,9 @@ HarmonicCache::HarmonicCache(const RivalSettings& settings, int bands, Masking m
 std::optional<MetallicRoughness> HarmonicCache::holds(const Bsdf& bsdf) const {
     const auto layers = as_layers(bsdf);
     const bool has_lobe = layers && !(is_black(layers->specular_f0) && is_black(layers->specular_f90));
-    if (!has_lobe || layers->smooth || layers->ggx.alpha < least_lobe_alpha(lobes_.bands())) return {};
+    if (!has_lobe || layers->smooth || is_anisotropic(layers->ggx)
+        || layers->ggx.alpha < least_lobe_alpha(lobes_.bands()))
+        return {};
     return layers;
 }
 

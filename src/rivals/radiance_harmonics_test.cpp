@@ -59,7 +59,8 @@ TEST(LobeHarmonics, ReflectOfAnEvenSkyWhatTheAlbedoSays) {
     EXPECT_NEAR(products(sky, frame, lobes().cosine(), 0)[0], 1, 0.002);
     for (const float alpha : {0.35f, 0.6f, 1.0f})
         for (const float cosine : {1.0f, 0.7f, 0.3f}) {
-            const LobeAlbedo albedo = lobe_albedo(cosine, {alpha, Masking::correlated});
+            const LobeAlbedo albedo =
+                lobe_albedo({{std::sqrt(1 - cosine * cosine), 0, cosine}}, {alpha, Masking::correlated});
             EXPECT_NEAR(products(sky, frame, lobe_of(alpha, cosine), 0)[0], albedo.f0 + albedo.f90, 0.02)
                 << alpha << ' ' << cosine;
         }

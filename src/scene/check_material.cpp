@@ -59,6 +59,8 @@ void MaterialChecker::check() const {
     at_least(material_.emission.r, 0, "emission");
     at_least(material_.emission.g, 0, "emission");
     at_least(material_.emission.b, 0, "emission");
+    if (!std::isfinite(material_.anisotropy_rotation))
+        refuse("anisotropy rotation", "finite", "NaN or infinity");
     if (!std::isfinite(material_.normal_scale)) refuse("normal scale", "finite", "NaN or infinity");
     if (!(material_.attenuation_distance > 0))
         refuse("attenuation distance", "above 0", fmt::format("{:g}", material_.attenuation_distance));
@@ -69,6 +71,7 @@ void MaterialChecker::factors() const {
     factor(material_.base_alpha, "alpha");
     factor(material_.metallic, "metallic");
     factor(material_.roughness, "roughness");
+    factor(material_.anisotropy, "anisotropy");
     factor(material_.specular, "specular");
     factor(material_.transmission, "transmission");
     factor(material_.attenuation_color, "attenuation colour");
@@ -86,6 +89,7 @@ void MaterialChecker::factors() const {
 void MaterialChecker::textures() const {
     texture(material_.base_color_texture, "base colour texture");
     texture(material_.metallic_roughness_texture, "metallic-roughness texture");
+    texture(material_.anisotropy_texture, "anisotropy texture");
     texture(material_.normal_texture, "normal texture");
     texture(material_.emission_texture, "emission texture");
     texture(material_.specular_texture, "specular texture");

@@ -159,6 +159,15 @@ void repair_tangents(Mesh& mesh) {
     }
 }
 
+/// Where the material asks for tangents and the mesh has none: along u of its normal map, or else of what
+/// orients its lobes.
+void generate_tangents(Mesh& mesh, const Material& material) {
+    const bool oriented = is_anisotropic(material) && !mesh.facet_tangents;
+    if (!mesh.tangents.empty() || (!material.normal_texture && !oriented)) return;
+    const auto& map = material.normal_texture ? material.normal_texture : material.anisotropy_texture;
+    add_tangents(mesh, map ? static_cast<std::size_t>(map->uv_set) : 0);
+}
+
 void finish_mesh(Mesh& mesh, const SceneData& scene, Repairs& repairs) {
     const std::string where = fmt::format("{}: mesh {}", scene.name, quote(mesh.name));
     check_sizes(mesh, scene, where);
@@ -168,8 +177,7 @@ void finish_mesh(Mesh& mesh, const SceneData& scene, Repairs& repairs) {
     repairs.normals += repair_normals(mesh);
     repairs.uvs += repair_uvs(mesh.uvs[0]) + repair_uvs(mesh.uvs[1]);
     repair_colors(mesh);
-    const auto& normal_map = scene.materials[index(mesh.material)].normal_texture;
-    if (normal_map && mesh.tangents.empty()) add_tangents(mesh, static_cast<std::size_t>(normal_map->uv_set));
+    generate_tangents(mesh, scene.materials[index(mesh.material)]);
     repair_tangents(mesh);
     mesh.positions.reserve(mesh.positions.size() + spare_vertices);
 }

@@ -79,6 +79,7 @@ class MaterialReader {
     void read_alpha(const tinygltf::Material& source, Material& material) const;
     void read_specular(const Value* specular, Material& material);
     void read_refraction(const tinygltf::ExtensionMap& extensions, Material& material);
+    void read_anisotropy(const Value* anisotropy, Material& material);
     void read_clearcoat(const Value* clearcoat, Material& material);
     void read_sheen(const Value* sheen, Material& material);
     void read_specular_glossiness(const Value* source, Material& material);
@@ -125,6 +126,7 @@ Material MaterialReader::read(std::size_t i) {
     read_alpha(source, material);
     read_specular(extension(source.extensions, "KHR_materials_specular"), material);
     read_refraction(source.extensions, material);
+    read_anisotropy(extension(source.extensions, "KHR_materials_anisotropy"), material);
     read_clearcoat(extension(source.extensions, "KHR_materials_clearcoat"), material);
     read_sheen(extension(source.extensions, "KHR_materials_sheen"), material);
     if (const Value* gloss = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness"))
@@ -181,6 +183,12 @@ void MaterialReader::read_refraction(const tinygltf::ExtensionMap& extensions, M
     material.attenuation_color = color_or_white(volume, "attenuationColor");
     const double distance = number_or(volume, "attenuationDistance", 0);
     if (distance > 0) material.attenuation_distance = static_cast<float>(distance);
+}
+
+void MaterialReader::read_anisotropy(const Value* anisotropy, Material& material) {
+    material.anisotropy = static_cast<float>(number_or(anisotropy, "anisotropyStrength", 0));
+    material.anisotropy_rotation = static_cast<float>(number_or(anisotropy, "anisotropyRotation", 0));
+    material.anisotropy_texture = texture(anisotropy, "anisotropyTexture");
 }
 
 void MaterialReader::read_clearcoat(const Value* clearcoat, Material& material) {

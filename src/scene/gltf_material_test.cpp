@@ -200,6 +200,25 @@ TEST(GltfMaterial, ReadsClearcoatAndSheen) {
     EXPECT_TRUE(is_black(read_material(json::object()).sheen_color));
 }
 
+TEST(GltfMaterial, ReadsAnisotropy) {
+    GltfBuilder builder = test::triangle_document();
+    const json info = {{"index", add_texture(builder)}};
+    const SceneData scene = read(
+        builder,
+        {{"extensions",
+          {{"KHR_materials_anisotropy",
+            {{"anisotropyStrength", 0.75}, {"anisotropyRotation", -1.5}, {"anisotropyTexture", info}}}}}});
+    const Material& m = scene.materials.at(0);
+    EXPECT_EQ(m.anisotropy, 0.75f);
+    EXPECT_EQ(m.anisotropy_rotation, -1.5f);
+    EXPECT_TRUE(m.anisotropy_texture);
+    EXPECT_TRUE(scene.warnings.empty());
+    const Material plain =
+        read_material({{"extensions", {{"KHR_materials_anisotropy", {{"anisotropyRotation", 1}}}}}});
+    EXPECT_FALSE(is_anisotropic(plain));
+    EXPECT_FALSE(is_anisotropic(read_material(json::object())));
+}
+
 TEST(GltfMaterial, TexturesOfClearcoatAndSheenAreRead) {
     GltfBuilder builder = test::triangle_document();
     const json info = {{"index", add_texture(builder)}};

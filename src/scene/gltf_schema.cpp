@@ -166,6 +166,11 @@ constexpr Field clearcoat[] = {
     object("clearcoatRoughnessTexture", texture_info),
     object("clearcoatNormalTexture", normal_texture_info),
 };
+constexpr Field anisotropy[] = {
+    number("anisotropyStrength"),
+    number("anisotropyRotation"),
+    object("anisotropyTexture", texture_info),
+};
 constexpr Field sheen[] = {
     numbers("sheenColorFactor", 3),
     object("sheenColorTexture", texture_info),
@@ -181,6 +186,7 @@ constexpr Field specular_glossiness[] = {
 };
 constexpr Field nothing[] = {text("name")};
 constexpr Field material_extensions[] = {
+    object("KHR_materials_anisotropy", anisotropy),
     object("KHR_materials_clearcoat", clearcoat),
     object("KHR_materials_pbrSpecularGlossiness", specular_glossiness),
     object("KHR_materials_sheen", sheen),

@@ -69,12 +69,7 @@ void MitsubaMaterials::read_alpha(MitsubaProperties& p, MitsubaDraft& draft) {
     if (!p.find("alpha_u") && !p.find("alpha_v")) return;
     const PbrtNodeRef u = textures_.number(p, "alpha_u", 0.1), v = textures_.number(p, "alpha_v", 0.1);
     draft.alpha = u;
-    if (!is_constant(u) || !is_constant(v)) {
-        p.warn("alpha_u and alpha_v by textures: alpha_u alone is read");
-    } else if (u->value.r != v->value.r) {
-        p.warn("alpha that differs along u and v is read as its geometric mean");
-        draft.alpha = constant_node(Spectrum{std::sqrt(std::max(0.0f, u->value.r * v->value.r))});
-    }
+    if (!is_constant(u) || !is_constant(v) || u->value.r != v->value.r) draft.alpha_v = v;
 }
 
 void MitsubaMaterials::dielectric(MitsubaProperties& p, MitsubaDraft& draft) {
@@ -154,6 +149,10 @@ void MitsubaMaterials::principled(MitsubaProperties& p, MitsubaDraft& draft) {
     const PbrtNodeRef metallic = textures_.number(p, "metallic", 0);
     m.metallic = is_constant(metallic) ? std::clamp(metallic->value.r, 0.0f, 1.0f) : 1;
     if (!is_constant(metallic)) draft.metallic = metallic;
+    const PbrtNodeRef anisotropic = textures_.number(p, "anisotropic", 0);
+    if (!is_constant(anisotropic)) p.warn("a texture for anisotropic is not supported: 0 instead");
+    if (is_constant(anisotropic))
+        draft.aspect = std::sqrt(1 - 0.9f * std::clamp(anisotropic->value.r, 0.0f, 1.0f));
     const PbrtNodeRef through = textures_.number(p, "spec_trans", 0);
     if (!is_constant(through)) p.warn("a texture for spec_trans is not supported: 0 instead");
     m.transmission = is_constant(through) ? std::clamp(through->value.r, 0.0f, 1.0f) : 0;
@@ -164,8 +163,7 @@ void MitsubaMaterials::principled(MitsubaProperties& p, MitsubaDraft& draft) {
     if (!(eta >= 1 && eta < 100))
         p.refuse("eta", "an index of refraction of 1 to 100", fmt::format("{:g}", eta));
     m.ior = static_cast<float>(eta);
-    for (const char* name :
-         {"anisotropic", "spec_tint", "sheen", "sheen_tint", "clearcoat", "flatness", "diff_trans"}) {
+    for (const char* name : {"spec_tint", "sheen", "sheen_tint", "clearcoat", "flatness", "diff_trans"}) {
         const PbrtNodeRef node = textures_.number(p, name, 0);
         if (!is_constant(node) || node->value.r != 0)
             p.warn(fmt::format("{} of {} is not supported: 0 instead", quote(name), quote(p.object().type)));
@@ -242,7 +240,10 @@ void MitsubaMaterials::blend(MitsubaProperties& p, MitsubaDraft& draft) {
     draft.material.metallic = std::lerp(ma.metallic, mb.metallic, share);
     draft.material.specular = std::lerp(ma.specular, mb.specular, share);
     draft.material.transmission = std::lerp(ma.transmission, mb.transmission, share);
-    if (!draft.alpha) draft.alpha = a.alpha ? a.alpha : b.alpha;
+    if (draft.alpha) return;
+    const MitsubaDraft& rough = a.alpha ? a : b;
+    draft.alpha = rough.alpha;
+    draft.alpha_v = rough.alpha_v;
 }
 
 void MitsubaMaterials::fill_surface(MitsubaProperties& p, MitsubaDraft& draft) {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/message.hpp"
+#include "scene/lobe_along.hpp"
 #include "scene/quote.hpp"
 
 namespace relumine {
@@ -17,10 +18,12 @@ Spectrum to_unit(Spectrum c) {
     return {std::clamp(c.r, 0.0f, 1.0f), std::clamp(c.g, 0.0f, 1.0f), std::clamp(c.b, 0.0f, 1.0f)};
 }
 
-/// Our perceptual roughness, whose square is α.
-float our_roughness(float value, bool squared) {
-    const float alpha = std::clamp(squared ? value * value : value, 0.0f, 1.0f);
-    return alpha < 1e-3f ? 0.0f : std::sqrt(alpha);
+/// The lobe of a texture's values along u and v.
+LobeAlong lobe_of(const MitsubaDraft& draft, float u, float v) {
+    const auto alpha = [&](float value) {
+        return std::clamp(draft.squared ? value * value : value, 0.0f, 1.0f);
+    };
+    return lobe_along(alpha(u) / draft.aspect, alpha(v) * draft.aspect);
 }
 
 /// The brightest value of a texture's leaves, by which emission is scaled to what an image can hold.
@@ -97,13 +100,22 @@ void MitsubaMaterials::bake(MitsubaDraft& draft, const std::array<Vec2, 2>& doma
     }
     const PbrtNodeRef metallic = draft.metallic ? draft.metallic : constant_node(Spectrum{1});
     const PbrtNodeRef alpha = draft.alpha ? draft.alpha : constant_node({});
+    const PbrtNodeRef alpha_v = draft.alpha_v ? draft.alpha_v : alpha;
     const auto rough = [&](std::span<const Spectrum> v) {
-        return Vec4{1, our_roughness(v[0].r, draft.squared), std::clamp(v[1].r, 0.0f, 1.0f), 1};
+        return Vec4{1, lobe_of(draft, v[0].r, v[1].r).roughness, std::clamp(v[2].r, 0.0f, 1.0f), 1};
     };
     const PbrtBaked roughness =
-        textures_.baker().bake({alpha, metallic}, rough, false, false, domain, draft.place);
+        textures_.baker().bake({alpha, alpha_v, metallic}, rough, false, false, domain, draft.place);
     apply(roughness, m.metallic_roughness_texture, binding);
     m.roughness = roughness.texture ? 1.0f : roughness.value.y;
+    if (!draft.alpha_v && draft.aspect == 1) return;
+    const auto orient = [&](std::span<const Spectrum> v) {
+        return anisotropy_texel(lobe_of(draft, v[0].r, v[1].r));
+    };
+    const PbrtBaked anisotropy =
+        textures_.baker().bake({alpha, alpha_v}, orient, false, false, domain, draft.place);
+    apply(anisotropy, m.anisotropy_texture, binding);
+    set_anisotropy(m.anisotropy_texture, anisotropy.value, m);
 }
 
 /// Mitsuba's opaque BSDFs are black from behind unless `twosided`; ours are not.

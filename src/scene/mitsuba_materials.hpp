@@ -16,8 +16,10 @@ struct MitsubaDraft {
     PbrtPlace place;
     PbrtNodeRef color = constant_node(Spectrum{0.5f});
     std::function<Spectrum(Spectrum)> recolor;  // to our base colour; empty: the same
-    PbrtNodeRef alpha;                          // GGX's; null: perfectly smooth
-    bool squared = false;                       // `alpha` holds its root, as our roughness does
+    PbrtNodeRef alpha;                          // GGX's, along u; null: perfectly smooth
+    PbrtNodeRef alpha_v;                        // null: the same
+    float aspect = 1;      // of the principled BSDF: along u α is divided by it, along v multiplied
+    bool squared = false;  // `alpha` holds its root, as our roughness does
     PbrtNodeRef opacity = constant_node(Spectrum{1});
     PbrtNodeRef metallic;  // null: the material's number
     PbrtNodeRef normal;    // of a normal map, or null

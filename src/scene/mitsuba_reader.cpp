@@ -114,6 +114,7 @@ class ShapeBuilder {
                                              emitters.empty() ? nullptr : emitters[0], uv_range(mesh));
         if (!binding.visible) return {};
         mesh.material = binding.material;
+        mesh.facet_tangents = !is_mitsuba_curved(shape.type);
         mesh.name = shape.id.empty() ? shape.type : shape.id;
         if (binding.inside_out) {
             for (Triangle& t : mesh.triangles) std::swap(t.vertex[1], t.vertex[2]);

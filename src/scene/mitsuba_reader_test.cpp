@@ -202,6 +202,34 @@ TEST(Mitsuba, MetalsReflectAtNormalIncidenceAsTheyDo) {
     EXPECT_EQ(material_of(gold).metallic, 1);
 }
 
+TEST(Mitsuba, RoughnessMayDifferAlongUAndV) {
+    for (const char* kind : {"roughconductor", "roughdielectric"}) {
+        const SceneData scene =
+            with_bsdf("<bsdf type='" + std::string{kind}
+                      + "'><string name='distribution' value='ggx'/><float name='alpha_u' value='.1'/><float "
+                        "name='alpha_v' value='.4'/></bsdf>");
+        const Material& m = material_of(scene);
+        EXPECT_NEAR(sqr(m.roughness), .1f, 1e-6f);
+        EXPECT_NEAR(lerp(.1f, 1.0f, sqr(m.anisotropy)), .4f, 1e-6f);
+        EXPECT_FLOAT_EQ(m.anisotropy_rotation, pi / 2);
+        for (const std::string& w : scene.warnings) EXPECT_EQ(w.find("alpha"), w.npos) << w;
+    }
+    const Material u =
+        material_of(with_bsdf("<bsdf type='roughconductor'><float name='alpha_u' value='.5'/><float "
+                              "name='alpha_v' value='.2'/></bsdf>"));
+    EXPECT_NEAR(lerp(sqr(u.roughness), 1.0f, sqr(u.anisotropy)), .5f, 1e-6f);
+    EXPECT_EQ(u.anisotropy_rotation, 0);
+    EXPECT_FALSE(
+        is_anisotropic(material_of(with_bsdf("<bsdf type='roughconductor'><float name='alpha_u' "
+                                             "value='.2'/><float name='alpha_v' value='.2'/></bsdf>"))));
+    const Material principled =
+        material_of(with_bsdf("<bsdf type='principled'><float name='roughness' value='.5'/><float "
+                              "name='anisotropic' value='.75'/></bsdf>"));
+    const float aspect = std::sqrt(1 - .9f * .75f);
+    EXPECT_NEAR(sqr(principled.roughness), .25f * aspect, 1e-6f);
+    EXPECT_NEAR(lerp(sqr(principled.roughness), 1.0f, sqr(principled.anisotropy)), .25f / aspect, 1e-6f);
+}
+
 TEST(Mitsuba, GlassHasARelativeIndex) {
     const SceneData glass = with_bsdf("<bsdf type='dielectric'/>");
     EXPECT_NEAR(material_of(glass).ior, 1.5046 / 1.000277, 1e-5);

@@ -29,9 +29,51 @@ TEST(PbrtMaterials, RoughnessIsRemappedUnlessToldOtherwise) {  // α = √roughn
         material("Material \"conductor\" \"float roughness\" .25 \"bool remaproughness\" false").roughness,
         0.5f);
     EXPECT_EQ(material("Material \"conductor\"").roughness, 0);
-    EXPECT_FLOAT_EQ(
-        material("Material \"conductor\" \"float uroughness\" .04 \"float vroughness\" .16").roughness,
-        std::sqrt(std::sqrt(.08f)));
+}
+
+/// A material's α along u and along v.
+std::array<float, 2> alphas(const Material& m) {
+    const float across = sqr(m.roughness), along = lerp(across, 1.0f, sqr(m.anisotropy));
+    if (m.anisotropy_rotation == 0) return {along, across};
+    EXPECT_FLOAT_EQ(m.anisotropy_rotation, pi / 2);
+    return {across, along};
+}
+
+TEST(PbrtMaterials, RoughnessMayDifferAlongUAndV) {
+    const auto expect_alphas = [](const std::string& directive, float u, float v) {
+        const SceneData scene = read(directive + '\n' + triangle);
+        const auto [found_u, found_v] = alphas(scene.materials.at(0));
+        EXPECT_NEAR(found_u, u, 1e-6f) << directive;
+        EXPECT_NEAR(found_v, v, 1e-6f) << directive;
+        for (const std::string& w : scene.warnings) EXPECT_EQ(w.find("roughness"), w.npos) << w;
+        if (u != v) {
+            EXPECT_EQ(scene.meshes.at(0).uvs[0].size(), 3u) << "pbrt's default coordinates";
+            EXPECT_TRUE(scene.meshes.at(0).facet_tangents);
+        }
+    };
+    const std::string rough = " \"float uroughness\" .04 \"float vroughness\" .16";
+    for (const char* kind : {"conductor", "dielectric", "coateddiffuse"}) {
+        const std::string directive = std::string{"Material \""} + kind + '"';
+        expect_alphas(directive + rough, .2f, .4f);
+        expect_alphas(directive + rough + " \"bool remaproughness\" false", .04f, .16f);
+        expect_alphas(directive + " \"float roughness\" .25 \"float uroughness\" .36", .6f, .5f);
+        expect_alphas(directive + " \"float uroughness\" .09 \"float vroughness\" .09", .3f, .3f);
+        expect_alphas(directive + " \"float uroughness\" 0 \"float vroughness\" .09", 0, .3f);
+    }
+    expect_alphas(
+        "Material \"coatedconductor\" \"float conductor.uroughness\" .04 \"float "
+        "conductor.vroughness\" .16",
+        .2f, .4f);
+    EXPECT_FALSE(is_anisotropic(material("Material \"conductor\" \"float uroughness\" 0")));
+}
+
+TEST(PbrtMaterials, TexturesOfBothRoughnessesBecomeAnOrientation) {
+    const Material m = material(
+        "Texture \"t\" \"float\" \"checkerboard\" \"float tex1\" .04 \"float tex2\" .16\n"
+        "Material \"conductor\" \"texture uroughness\" \"t\" \"float vroughness\" .09");
+    EXPECT_TRUE(m.metallic_roughness_texture && m.anisotropy_texture);
+    EXPECT_EQ(m.anisotropy, 1);
+    EXPECT_EQ(m.roughness, 1);
 }
 
 TEST(PbrtMaterials, ConductorsReflectWhatTheirIndicesSay) {

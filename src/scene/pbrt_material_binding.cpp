@@ -6,16 +6,16 @@
 #include <cmath>
 
 #include "base/message.hpp"
+#include "scene/lobe_along.hpp"
 #include "scene/pbrt_material_draft.hpp"
 #include "scene/quote.hpp"
 
 namespace relumine {
 namespace {
 
-/// Our perceptual roughness of pbrt's, whose α is the value itself or its square root.
-float our_roughness(float value, bool remap) {
-    const float alpha = std::clamp(remap ? std::sqrt(std::max(value, 0.0f)) : value, 0.0f, 1.0f);
-    return alpha < 1e-3f ? 0.0f : std::sqrt(alpha);
+/// GGX α of pbrt's roughness: the value itself or its square root.
+float alpha_of(float value, bool remap) {
+    return std::clamp(remap ? std::sqrt(std::max(value, 0.0f)) : value, 0.0f, 1.0f);
 }
 
 Vec4 opaque(Spectrum c) { return {c.r, c.g, c.b, 1}; }
@@ -70,15 +70,31 @@ void PbrtMaterials::finish_textures(Draft& draft) {
         m.roughness = 0;
         return;
     }
+    finish_roughness(draft);
+}
+
+void PbrtMaterials::finish_roughness(Draft& draft) {
+    Material& m = draft.material;
     const bool remap = draft.remap;
+    std::vector<PbrtNodeRef> nodes{draft.roughness};
+    if (draft.roughness_v) nodes.push_back(draft.roughness_v);
+    const auto lobe = [&](std::span<const Spectrum> v) {
+        return lobe_along(alpha_of(v[0].r, remap), alpha_of(v[v.size() - 1].r, remap));
+    };
     const PbrtBaked roughness = textures_.bake(
-        {draft.roughness},
+        nodes,
         [&](std::span<const Spectrum> v) {
-            return Vec4{1, our_roughness(v[0].r, remap), 1, 1};
+            return Vec4{1, lobe(v).roughness, 1, 1};
         },
         false, false, draft.domain, draft.place);
     apply(roughness, m.metallic_roughness_texture, draft);
     m.roughness = roughness.texture ? 1.0f : roughness.value.y;
+    if (!draft.roughness_v) return;
+    const PbrtBaked anisotropy = textures_.bake(
+        nodes, [&](std::span<const Spectrum> v) { return anisotropy_texel(lobe(v)); }, false, false,
+        draft.domain, draft.place);
+    apply(anisotropy, m.anisotropy_texture, draft);
+    set_anisotropy(m.anisotropy_texture, anisotropy.value, m);
 }
 
 void PbrtMaterials::emit(const PbrtEntity& light, double area, Draft& draft) {
@@ -133,6 +149,8 @@ bool PbrtMaterials::needs_uv(const PbrtShape& shape) {
     const std::string key = fmt::format("{}:{}", shape.material.number, shape.material.name);
     if (const auto it = needs_uv_.find(key); it != needs_uv_.end()) return it->second;
     bool textured = entity.type == "mix" || entity.parameters.has("normalmap");
+    for (const char* name : {"uroughness", "vroughness", "conductor.uroughness", "conductor.vroughness"})
+        textured = textured || entity.parameters.has(name);  // it follows u
     for (const char* name : {"reflectance", "roughness", "uroughness", "vroughness", "conductor.roughness",
                              "conductor.uroughness", "conductor.vroughness", "transmittance"})
         textured = textured || entity.parameters.find_texture(name) != nullptr;

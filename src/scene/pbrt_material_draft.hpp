@@ -13,7 +13,8 @@ struct PbrtMaterials::Draft {
     std::string type;
     PbrtNodeRef color = constant_node(Spectrum{0.5f});  // before `recolor`
     std::function<Spectrum(Spectrum)> recolor;          // to our base colour; empty: the same
-    PbrtNodeRef roughness;                              // as pbrt says it; null: perfectly smooth
+    PbrtNodeRef roughness;                              // as pbrt says it, along u; null: perfectly smooth
+    PbrtNodeRef roughness_v;                            // null: the same
     bool remap = true;
     PbrtNodeRef alpha = constant_node(Spectrum{1});
     std::optional<PbrtMapping> mapping;

@@ -97,11 +97,8 @@ void PbrtMaterials::read_roughness(const PbrtParameters& p, const std::string& p
     if (!u) u = both;
     if (!v) v = both;
     draft.roughness = u;
-    const bool anisotropic = u != v && !(is_constant(u) && is_constant(v) && u->value == v->value);
-    if (!anisotropic) return;
-    scene_.warn(p.place(), "roughness that differs along u and v is read as their mean");
-    if (is_constant(u) && is_constant(v))
-        draft.roughness = constant_node(Spectrum{std::sqrt(std::max(0.0f, u->value.r * v->value.r))});
+    draft.roughness_v = is_constant(u) && is_constant(v) && u->value == v->value ? nullptr : v;
+    if (u == v) draft.roughness_v = nullptr;
 }
 
 double PbrtMaterials::read_eta(const PbrtParameters& p, std::string_view name) {
@@ -258,6 +255,7 @@ void PbrtMaterials::mix(const PbrtEntity& entity, Draft& draft) {
     draft.remap = main.remap;
     draft.color = main.color;
     draft.roughness = main.roughness;
+    draft.roughness_v = main.roughness_v;
     draft.transmittance = main.transmittance;
     draft.normal = main.normal;
     if (a.coated_diffuse != b.coated_diffuse || main.transmittance) return;  // the one of the larger share
@@ -272,7 +270,10 @@ void PbrtMaterials::mix(const PbrtEntity& entity, Draft& draft) {
     if (!parts[0].recolor && !parts[1].recolor) draft.color = std::move(color);
     draft.material.metallic = std::lerp(a.metallic, b.metallic, share);
     draft.material.specular = std::lerp(a.specular, b.specular, share);
-    if (!draft.roughness) draft.roughness = parts[0].roughness ? parts[0].roughness : parts[1].roughness;
+    if (draft.roughness) return;
+    const Draft& rough = parts[0].roughness ? parts[0] : parts[1];
+    draft.roughness = rough.roughness;
+    draft.roughness_v = rough.roughness_v;
 }
 
 void PbrtMaterials::unsupported(const PbrtEntity& entity, Draft& draft) {

@@ -66,6 +66,7 @@ class PbrtMaterials {
     void emit(const PbrtEntity& light, double area, Draft& draft);
     void apply(const PbrtBaked& baked, std::optional<TextureRef>& ref, Draft& draft);
     void finish_textures(Draft& draft);
+    void finish_roughness(Draft& draft);
 
     PbrtScene& scene_;
     PbrtFiles& files_;

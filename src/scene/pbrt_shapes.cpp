@@ -152,6 +152,7 @@ Mesh make_pbrt_mesh(const PbrtShape& shape, const PbrtDetail& detail, bool needs
     if (mesh.triangles.empty()) return {};
     orient(mesh, shape.reverse_orientation);
     if (needs_uv && mesh.uvs[0].empty()) add_default_uv(mesh);
+    mesh.facet_tangents = !is_pbrt_quadric(shape.entity.type);
     return mesh;
 }
 

@@ -46,7 +46,11 @@ struct Material {
     std::optional<TextureRef> base_color_texture;  // RGBA
     float metallic = 1, roughness = 1;
     std::optional<TextureRef> metallic_roughness_texture;  // B, G; linear
-    std::optional<TextureRef> normal_texture;              // tangent space, linear
+    // KHR_materials_anisotropy. Along the tangent, turned by the rotation towards the bitangent, α is
+    // lerp(roughness², 1, anisotropy²); across it, it is roughness².
+    float anisotropy = 0, anisotropy_rotation = 0;  // strength, radians
+    std::optional<TextureRef> anisotropy_texture;   // RG: direction from −1 to 1, B: strength; linear
+    std::optional<TextureRef> normal_texture;       // tangent space, linear
     float normal_scale = 1;
     Spectrum emission;                           // radiance, W·sr⁻¹·m⁻², emissive strength included
     std::optional<TextureRef> emission_texture;  // RGB, sRGB
@@ -73,6 +77,9 @@ struct Material {
     std::optional<TextureRef> sheen_color_texture, sheen_roughness_texture;  // RGB, sRGB; A
 };
 
+/// Whether the material's lobes have an orientation on the surface.
+inline bool is_anisotropic(const Material& m) { return m.anisotropy > 0; }
+
 struct Triangle {
     std::array<std::uint32_t, 3> vertex;
 };
@@ -82,8 +89,9 @@ struct Triangle {
 struct Mesh {
     std::string name;
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals;                 // unit, per vertex; empty: flat shading
-    std::vector<Vec4> tangents;                // xyz unit, w = handedness ±1, per vertex; may be empty
+    std::vector<Vec3> normals;    // unit, per vertex; empty: flat shading
+    std::vector<Vec4> tangents;   // xyz unit, w = handedness ±1, per vertex; may be empty
+    bool facet_tangents = false;  // where empty: each triangle's own ∂p/∂u, as in pbrt and Mitsuba
     std::array<std::vector<Vec2>, 2> uvs;      // per vertex; may be empty; v grows downwards
     std::vector<std::array<float, 4>> colors;  // linear RGBA times base colour, per vertex; may be empty
     std::vector<Triangle> triangles;

@@ -38,11 +38,12 @@ void add(Fingerprint& print, const std::optional<TextureRef>& texture) {
 
 void add(Fingerprint& print, const Material& material) {
     const auto& [name, base_color, base_alpha, base_color_texture, metallic, roughness,
-                 metallic_roughness_texture, normal_texture, normal_scale, emission, emission_texture,
-                 alpha_mode, alpha_cutoff, double_sided, ior, specular, specular_texture, specular_color,
-                 specular_color_texture, transmission, transmission_texture, solid, attenuation_color,
-                 attenuation_distance, coated_diffuse, diffuse_transmission, diffuse_transmission_texture,
-                 clearcoat, clearcoat_roughness, clearcoat_texture, clearcoat_roughness_texture, sheen_color,
+                 metallic_roughness_texture, anisotropy, anisotropy_rotation, anisotropy_texture,
+                 normal_texture, normal_scale, emission, emission_texture, alpha_mode, alpha_cutoff,
+                 double_sided, ior, specular, specular_texture, specular_color, specular_color_texture,
+                 transmission, transmission_texture, solid, attenuation_color, attenuation_distance,
+                 coated_diffuse, diffuse_transmission, diffuse_transmission_texture, clearcoat,
+                 clearcoat_roughness, clearcoat_texture, clearcoat_roughness_texture, sheen_color,
                  sheen_roughness, sheen_color_texture, sheen_roughness_texture] = material;
     (void)name;
     for (const Spectrum& colour :
@@ -50,16 +51,17 @@ void add(Fingerprint& print, const Material& material) {
         add(print, colour);
     add_each(print, base_alpha, metallic, roughness, normal_scale, alpha_mode, alpha_cutoff, double_sided,
              ior, specular, transmission, solid, attenuation_distance, coated_diffuse, clearcoat,
-             clearcoat_roughness, sheen_roughness);
+             clearcoat_roughness, sheen_roughness, anisotropy, anisotropy_rotation);
     for (const auto* texture :
          {&base_color_texture, &metallic_roughness_texture, &normal_texture, &emission_texture,
           &specular_texture, &specular_color_texture, &transmission_texture, &diffuse_transmission_texture,
-          &clearcoat_texture, &clearcoat_roughness_texture, &sheen_color_texture, &sheen_roughness_texture})
+          &clearcoat_texture, &clearcoat_roughness_texture, &sheen_color_texture, &sheen_roughness_texture,
+          &anisotropy_texture})
         add(print, *texture);
 }
 
 void add(Fingerprint& print, const Mesh& mesh) {
-    const auto& [name, positions, normals, tangents, uvs, colors, triangles, material] = mesh;
+    const auto& [name, positions, normals, tangents, facet_tangents, uvs, colors, triangles, material] = mesh;
     (void)name;
     print.add_all(positions);
     print.add_all(normals);
@@ -67,7 +69,7 @@ void add(Fingerprint& print, const Mesh& mesh) {
     for (const auto& coordinates : uvs) print.add_all(coordinates);
     print.add_all(colors);
     print.add_all(triangles);
-    print.add(material);
+    add_each(print, facet_tangents, material);
 }
 
 void add(Fingerprint& print, const Instance& instance) {

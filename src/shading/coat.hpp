@@ -10,7 +10,7 @@ namespace relumine {
 /// roughness. The specification's 1 − F at the half vector gains energy: the lobe reflects less than F there
 /// and more elsewhere.
 inline float coat_transmittance(const MetallicRoughness& b, float cosine) {
-    const Spectrum reflected = b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(cosine, b.ggx.alpha);
+    const Spectrum reflected = b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(cosine, b.ggx);
     return 1 - std::min(1.0f, max_component(reflected));
 }
 

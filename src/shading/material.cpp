@@ -13,13 +13,24 @@ Spectrum rgb(Vec4 v) { return {v.x, v.y, v.z}; }
 /// A material's factors times its textures at one point.
 struct Factors {
     Spectrum base_color;
-    float metallic, alpha /* GGX */, transmission, specular;
+    float metallic, alpha_x, alpha_y /* GGX */, transmission, specular;
     Spectrum specular_color;
+
+    /// Too smooth for anything but a delta.
+    [[nodiscard]] bool smooth() const { return std::max(alpha_x, alpha_y) < smooth_alpha; }
+    [[nodiscard]] Ggx ggx(Masking masking) const { return make_ggx(alpha_x, alpha_y, masking); }
 };
+
+/// How much rougher the lobes are along one direction, [0, 1].
+float anisotropy_at(const SceneData& scene, const SurfacePoint& p) {
+    const Material& m = *p.material;
+    if (!m.anisotropy_texture || !is_anisotropic(m)) return m.anisotropy;
+    return m.anisotropy * sample_texture(scene, *m.anisotropy_texture, p.uv, Encoding::linear).z;
+}
 
 Factors factors_at(const SceneData& scene, const SurfacePoint& p) {
     const Material& m = *p.material;
-    Factors f{m.base_color * p.vertex_color, m.metallic, 0, m.transmission, m.specular, m.specular_color};
+    Factors f{m.base_color * p.vertex_color, m.metallic, 0, 0, m.transmission, m.specular, m.specular_color};
     float roughness = m.roughness;
     if (m.base_color_texture)
         f.base_color *= rgb(sample_texture(scene, *m.base_color_texture, p.uv, Encoding::srgb));
@@ -34,7 +45,8 @@ Factors factors_at(const SceneData& scene, const SurfacePoint& p) {
         f.specular *= sample_texture(scene, *m.specular_texture, p.uv, Encoding::linear).w;
     if (m.specular_color_texture)
         f.specular_color *= rgb(sample_texture(scene, *m.specular_color_texture, p.uv, Encoding::srgb));
-    f.alpha = sqr(roughness);
+    f.alpha_x = f.alpha_y = sqr(roughness);
+    if (is_anisotropic(m)) f.alpha_x = lerp(f.alpha_y, 1.0f, sqr(anisotropy_at(scene, p)));
     return f;
 }
 
@@ -43,10 +55,10 @@ Spectrum clamped(Spectrum s) { return {std::min(s.r, 1.0f), std::min(s.g, 1.0f),
 Bsdf glass(const SurfacePoint& p, const Factors& f, Masking masking) {
     const Material& m = *p.material;
     const float eta = p.front || !m.solid ? m.ior : 1 / m.ior;
-    if (f.alpha < smooth_alpha) return SmoothDielectric{eta, f.base_color, !m.solid};
+    if (f.smooth()) return SmoothDielectric{eta, f.base_color, !m.solid};
     // An index of 1 refracts nothing: only the thin model has a density then.
     if (m.solid && std::abs(eta - 1) < 1e-4f) return SmoothDielectric{eta, f.base_color, true};
-    return RoughDielectric{eta, f.base_color, !m.solid, {std::min(f.alpha, 1.0f), masking}};
+    return RoughDielectric{eta, f.base_color, !m.solid, f.ggx(masking)};
 }
 
 float glass_share(const Factors& f) { return f.transmission * (1 - f.metallic); }
@@ -76,8 +88,8 @@ PaneShares pane_shares(const SceneData& scene, const Hit& hit, const SurfacePoin
 
 /// The layering without its transmissive part: metal in the share `metallic` of it.
 Bsdf opaque_layers(const Factors& f, float metallic, float ior, Masking masking) {
-    const bool smooth = f.alpha < smooth_alpha;
-    const Ggx ggx{std::clamp(f.alpha, smooth_alpha, 1.0f), masking};
+    const bool smooth = f.smooth();
+    const Ggx ggx = f.ggx(masking);
     if (metallic >= 1) return smooth ? Bsdf{Mirror{f.base_color}} : Bsdf{RoughConductor{f.base_color, ggx}};
     const Spectrum coat_f0 = clamped(f.specular_color * sqr((ior - 1) / (ior + 1))) * f.specular;
     const Spectrum coat_f90{f.specular};
@@ -126,8 +138,7 @@ Bsdf coated_layers(const SceneData& scene, const SurfacePoint& p, const Bsdf& ba
 
 Bsdf coated_diffuse(const Factors& f, float ior, Masking masking) {
     const Spectrum base = f.base_color / std::max(f.specular, 1e-3f);
-    return CoatedDiffuse{
-        base, ior, {std::clamp(f.alpha, smooth_alpha, 1.0f), masking}, f.alpha < smooth_alpha, true};
+    return CoatedDiffuse{base, ior, f.ggx(masking), f.smooth(), true};
 }
 
 Bsdf diffuse_transmission(const SceneData& scene, const SurfacePoint& p, const Factors& f) {
@@ -151,7 +162,7 @@ Bsdf make_bsdf(const SceneData& scene, const SurfacePoint& p, Masking masking, f
 
 Pane pane_kind(const SceneData& scene, const Mesh& mesh) {
     const Material& m = scene.materials[index(mesh.material)];
-    const bool smooth = sqr(m.roughness) < smooth_alpha;
+    const bool smooth = sqr(m.roughness) < smooth_alpha && !is_anisotropic(m);
     if (!(m.transmission > 0) || m.solid || !smooth || m.metallic >= 1 || !is_black(m.emission))
         return Pane::none;
     const bool grey = m.base_color.r == m.base_color.g && m.base_color.g == m.base_color.b;
@@ -188,7 +199,7 @@ UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(sce
                             || m.specular_texture || m.specular_color_texture || m.transmission > 0
                             || m.diffuse_transmission_texture || m.clearcoat_texture
                             || m.clearcoat_roughness_texture || m.sheen_color_texture
-                            || m.sheen_roughness_texture;
+                            || m.sheen_roughness_texture || (m.anisotropy_texture && is_anisotropic(m));
         SurfacePoint anywhere;
         anywhere.material = &m;
         bsdfs_.push_back(varies ? std::nullopt : std::optional(make_bsdf(scene, anywhere, masking, 0)));

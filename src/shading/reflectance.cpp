@@ -10,6 +10,7 @@ namespace relumine {
 namespace {
 
 constexpr int cosines = 32, roughnesses = 24, strata = 16;
+constexpr int stretched_strata = 8;  // of lobes that no table holds
 
 /// Entries stand for cos θ = (i / (cosines − 1))², and for √α in even steps: finer where albedos change.
 float cosine_at(int i) { return std::max(sqr(static_cast<float>(i) / (cosines - 1)), 1e-3f); }
@@ -27,9 +28,9 @@ void over_square(int side, const Add& add) {
                        (static_cast<float>(j) + 0.5f) / static_cast<float>(side)});
 }
 
-LobeAlbedo integrate_lobe(LocalDir w_out, const Ggx& ggx) {
+LobeAlbedo integrate_lobe(LocalDir w_out, const Ggx& ggx, int side) {
     LobeAlbedo sum{0, 0};
-    over_square(strata, [&](Point2 u) {
+    over_square(side, [&](Point2 u) {
         const LocalDir w_in = sample_reflection(ggx, w_out, u);
         if (cos_theta(w_in) <= 0) return;
         const LocalDir h{normalize(w_out.v + w_in.v)};
@@ -40,7 +41,7 @@ LobeAlbedo integrate_lobe(LocalDir w_out, const Ggx& ggx) {
         sum.f0 += weight * (1 - grazing);
         sum.f90 += weight * grazing;
     });
-    constexpr float share = 1.0f / (strata * strata);
+    const float share = 1.0f / static_cast<float>(side * side);
     return {sum.f0 * share, sum.f90 * share};
 }
 
@@ -53,7 +54,7 @@ struct Tables {
             for (const Masking masking : {Masking::correlated, Masking::separable})
                 for (int j = 0; j < roughnesses; ++j)
                     lobe[static_cast<std::size_t>(masking)][row][static_cast<std::size_t>(j)] =
-                        integrate_lobe(view(cosine_at(i)), {alpha_at(j), masking});
+                        integrate_lobe(view(cosine_at(i)), {alpha_at(j), masking}, strata);
         }
     }
 };
@@ -95,7 +96,7 @@ struct Splitter {
         return {{}, schlick(b.f0, Spectrum{1}, cos_theta(w_out)), b, false, 0};
     }
     LobeSplit operator()(const RoughConductor& b) const {
-        const LobeAlbedo a = lobe_albedo(cos_theta(w_out), b.ggx);
+        const LobeAlbedo a = lobe_albedo(w_out, b.ggx);
         return {{}, b.f0 * a.f0 + Spectrum{a.f90}, b, false, b.ggx.alpha};
     }
     LobeSplit operator()(const SmoothDielectric& b) const { return {{}, {}, b, true, 0}; }
@@ -124,7 +125,7 @@ struct Splitter {
         if (b.smooth) {
             split.glossy = schlick(b.specular_f0, b.specular_f90, cos_theta(w_out));
         } else {
-            const LobeAlbedo a = lobe_albedo(cos_theta(w_out), b.ggx);
+            const LobeAlbedo a = lobe_albedo(w_out, b.ggx);
             split.glossy = b.specular_f0 * a.f0 + b.specular_f90 * a.f90;
             split.alpha = b.ggx.alpha;
         }
@@ -145,7 +146,7 @@ struct Splitter {
             if (b.clearcoat_smooth)
                 a = {1 - fifth_power(1 - cos_theta(w_out)), fifth_power(1 - cos_theta(w_out))};
             else
-                a = lobe_albedo(cos_theta(w_out), b.clearcoat_ggx);
+                a = lobe_albedo(w_out, b.clearcoat_ggx);
             split.glossy += Spectrum{b.clearcoat * (0.04f * a.f0 + a.f90)};
             split.alpha = std::min(split.alpha, b.clearcoat_ggx.alpha);
         }
@@ -161,9 +162,10 @@ struct Splitter {
 
 }  // namespace
 
-LobeAlbedo lobe_albedo(float cosine, const Ggx& ggx) {
+LobeAlbedo lobe_albedo(LocalDir w_out, const Ggx& ggx) {
+    if (is_anisotropic(ggx)) return integrate_lobe(w_out, ggx, stretched_strata);
     const auto& table = tables().lobe[static_cast<std::size_t>(ggx.masking)];
-    const Place i = place_of(cosine, cosines), j = place_of(ggx.alpha, roughnesses);
+    const Place i = place_of(cos_theta(w_out), cosines), j = place_of(ggx.alpha, roughnesses);
     const auto row = [&](std::size_t k) { return mixed(table[k][j.entry], table[k][j.entry + 1], j.beyond); };
     return mixed(row(i.entry), row(i.entry + 1), i.beyond);
 }

@@ -13,10 +13,11 @@ struct LobeSplit {
     Spectrum glossy;            // that of the lobes
     std::optional<Bsdf> lobes;  // the BSDF without its diffuse part; empty where there are none
     bool transmits = false;     // glass: `diffuse` and `glossy` are 0, `lobes` is all of it
-    float alpha = 0;            // GGX roughness of the lobes; 0: a delta
+    float alpha = 0;            // GGX roughness of the lobes, the mean of stretched ones; 0: a delta
 };
 
-/// Exact but for the tables' interpolation, an absolute error of 0.005 (0.02 at views below 5°); where the
+/// Exact but for the tables' interpolation, an absolute error of 0.005 (0.02 at views below 5°, 0.03 of
+/// stretched lobes); where the
 /// channels of a coat's reflectance differ by more than a scale, the largest counts.
 [[nodiscard]] LobeSplit split_lobes(const Bsdf& bsdf, LocalDir w_out);
 
@@ -25,6 +26,6 @@ struct LobeSplit {
 struct LobeAlbedo {
     float f0, f90;
 };
-[[nodiscard]] LobeAlbedo lobe_albedo(float cosine, const Ggx& ggx);
+[[nodiscard]] LobeAlbedo lobe_albedo(LocalDir w_out, const Ggx& ggx);
 
 }  // namespace relumine

@@ -72,6 +72,24 @@ TEST(Reflectance, ConductorsAreAllLobe) {
     }
 }
 
+TEST(Reflectance, StretchedLobesDependOnTheAzimuth) {
+    float least = 1, most = 0;
+    for (const float azimuth : {0.0f, 0.8f, 1.57f})
+        for (const float cosine : {0.15f, 0.4f, 0.77f, 0.99f}) {
+            const float sine = std::sqrt(1 - sqr(cosine));
+            const LocalDir w_out{{sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}};
+            MetallicRoughness bsdf = layered(0.5f);
+            bsdf.ggx = make_ggx(0.8f, 0.1f, Masking::correlated);
+            const LobeSplit split = split_lobes(bsdf, w_out);
+            SCOPED_TRACE(testing::Message() << "azimuth " << azimuth << ", cosine " << cosine);
+            expect_near(split.diffuse + split.glossy, albedo_by_sampling(bsdf, w_out), 0.02f);
+            expect_near(split.glossy, albedo_by_sampling(*split.lobes, w_out), 0.02f);
+            if (cosine == 0.15f)
+                least = std::min(least, split.glossy.g), most = std::max(most, split.glossy.g);
+        }
+    EXPECT_GT(most, least + 0.05f);
+}
+
 TEST(Reflectance, MatteSurfacesHaveNoLobes) {
     const LobeSplit split = split_lobes(Lambert{Spectrum{0.3f}}, view(0.5f));
     EXPECT_EQ(split.diffuse, Spectrum{0.3f});

@@ -47,6 +47,53 @@ class NormalMapper {
     const Instance& instance_;
 };
 
+/// The vertices' tangents at the hit, in world space, of any length; w is the handedness.
+Vec4 world_tangent(const Mesh& mesh, const Triangle& triangle, const Hit& hit, const NormalMapper& map) {
+    const auto& [a, b, c] = triangle.vertex;
+    const Vec3 along = xyz(mesh.tangents[a]) * (1 - hit.u - hit.v) + xyz(mesh.tangents[b]) * hit.u
+                       + xyz(mesh.tangents[c]) * hit.v;
+    const Vec3 world = map.tangent(along);
+    return {world.x, world.y, world.z, mesh.tangents[a].w * map.winding()};
+}
+
+/// ∂p/∂u of the triangle, in object space, of any length; 0 where it has no texture coordinates.
+Vec3 facet_tangent(const Mesh& mesh, const Triangle& triangle) {
+    const auto& [a, b, c] = triangle.vertex;
+    const Vec3 e1 = mesh.positions[b] - mesh.positions[a], e2 = mesh.positions[c] - mesh.positions[a];
+    if (mesh.uvs[0].empty()) return {};
+    const Vec2 d1 = mesh.uvs[0][b] - mesh.uvs[0][a], d2 = mesh.uvs[0][c] - mesh.uvs[0][a];
+    return (e1 * d2.y - e2 * d1.y) * std::copysign(1.0f, d1.x * d2.y - d2.x * d1.y);
+}
+
+/// The direction of increased roughness in tangent space, unit [KHR_materials_anisotropy].
+Vec2 rougher_direction(const SceneData& scene, const Material& material, const std::array<Vec2, 2>& uv) {
+    const float c = std::cos(material.anisotropy_rotation), s = std::sin(material.anisotropy_rotation);
+    if (!material.anisotropy_texture) return {c, s};
+    const Vec4 texel = sample_texture(scene, *material.anisotropy_texture, uv, Encoding::linear);
+    const float x = 2 * texel.x - 1, y = 2 * texel.y - 1, length = std::sqrt(sqr(x) + sqr(y));
+    return length > 0 ? Vec2{(c * x - s * y) / length, (s * x + c * y) / length} : Vec2{c, s};
+}
+
+/// Along which the lobes of an anisotropic material are rougher, in world space, before any normal map. Not
+/// inlined: isotropic surfaces have nothing to do with it.
+[[gnu::noinline]] Vec3 lobe_axis(const SceneData& scene, const Mesh& mesh, const Hit& hit,
+                                 const NormalMapper& map, const ShadingTriangle& at) {
+    const Triangle& triangle = mesh.triangles[hit.triangle];
+    const auto of_facet = [&] {
+        const Vec3 t = map.tangent(facet_tangent(mesh, triangle));
+        return Vec4{t.x, t.y, t.z, 1};
+    };
+    const Vec4 tangent = mesh.tangents.empty() ? of_facet() : world_tangent(mesh, triangle, hit, map);
+    const Vec3 along = xyz(tangent);
+    const auto& [a, b, c] = at.corners;
+    const Vec3 normal =
+        length_squared(at.normal) > 0 ? at.normal : cross(b - a, c - a) * map.winding();  // any length
+    const Frame frame = frame_along(normalize(normal), along / std::max(max_abs(along), 1e-30f));
+    const Vec2 rougher =
+        rougher_direction(scene, scene.materials[index(mesh.material)], interpolate_uv(mesh, triangle, hit));
+    return frame.s * rougher.x + frame.t * (rougher.y * tangent.w);
+}
+
 /// The normal that a normal map asks for, unnormalised [glTF 2.0, §3.9.3].
 Vec3 mapped_normal(const SceneData& scene, const SurfacePoint& p, Vec3 normal, Vec4 tangent) {
     const Vec4 texel = sample_texture(scene, *p.material->normal_texture, p.uv, Encoding::linear);
@@ -73,14 +120,7 @@ Vec3 shading_normal(const SceneData& scene, const Mesh& mesh, const Triangle& tr
         if (length_squared(smooth) > 0) n = normalize(smooth);
     }
     if (p.material->normal_texture && !mesh.tangents.empty()) {
-        Vec4 tangent = mesh.tangents[triangle.vertex[0]];
-        const float handedness = tangent.w * map.winding();
-        const auto& [a, b, c] = triangle.vertex;
-        const Vec3 along = xyz(mesh.tangents[a]) * (1 - hit.u - hit.v) + xyz(mesh.tangents[b]) * hit.u
-                           + xyz(mesh.tangents[c]) * hit.v;
-        const Vec3 world = map.tangent(along);
-        tangent = {world.x, world.y, world.z, handedness};
-        const Vec3 mapped = mapped_normal(scene, p, n, tangent);
+        const Vec3 mapped = mapped_normal(scene, p, n, world_tangent(mesh, triangle, hit, map));
         if (length_squared(mapped) > 0) n = normalize(mapped);
     }
     return n;
@@ -103,9 +143,11 @@ ShadingTriangle shading_triangle(const SceneData& scene, const Hit& hit) {
     const Instance& instance = scene.instances[hit.instance];
     const Mesh& mesh = scene.meshes[index(instance.mesh)];
     const NormalMapper map(instance);
-    ShadingTriangle triangle{world_triangle(scene, hit.instance, hit.triangle), {}, map.winding()};
+    ShadingTriangle triangle{world_triangle(scene, hit.instance, hit.triangle), {}, {}, map.winding()};
     if (!mesh.normals.empty())
         triangle.normal = map.normal(interpolate(mesh.normals, mesh.triangles[hit.triangle], hit));
+    if (is_anisotropic(scene.materials[index(mesh.material)]))
+        triangle.lobe_axis = lobe_axis(scene, mesh, hit, map, triangle);
     return triangle;
 }
 
@@ -152,7 +194,9 @@ SurfacePoint surface_point(const SceneData& scene, const Hit& hit, WorldDir w_ou
     p.geometric_normal = p.front ? front_normal : -front_normal;
     Vec3 n = shading_normal(scene, mesh, triangle, hit, map, p, front_normal);
     n = face_forward(p.front ? n : -n, p.geometric_normal);
-    p.frame = frame_around(keep_viewer_above(n, w_out.v));
+    n = keep_viewer_above(n, w_out.v);
+    p.frame = is_anisotropic(*p.material) ? frame_along(n, shading_triangle(scene, hit).lobe_axis)
+                                          : frame_around(n);
     return p;
 }
 

@@ -10,7 +10,9 @@ namespace relumine {
 struct SurfacePoint {
     Vec3 position;          // world space
     Vec3 geometric_normal;  // unit, on the viewer's side
-    Frame frame;            // shading frame; n on the viewer's side and turned so that the viewer is above it
+    // Shading frame: n on the viewer's side and turned so that the viewer is above it, s where the lobes of
+    // anisotropic materials are rougher.
+    Frame frame;
     std::array<Vec2, 2> uv;  // texture coordinates, 0 where the mesh has none
     Spectrum vertex_color{1};
     bool has_vertex_color = false;
@@ -38,6 +40,7 @@ struct TextureCoordinates {
 struct ShadingTriangle {
     std::array<Vec3, 3> corners;  // world space, in the mesh's order
     Vec3 normal;                  // the vertices' normals at the hit, of any length; 0: flat shading
+    Vec3 lobe_axis;               // along which anisotropic lobes are rougher; 0: they are not
     float winding = 1;            // −1 where the transform to world space mirrors, so reverses that order
 };
 [[nodiscard]] ShadingTriangle shading_triangle(const SceneData& scene, const Hit& hit);

@@ -38,6 +38,8 @@ std::vector<PictureCase> make_pictures() {
         {"texture-transform", "texture-transform.gltf", sky, "KHR_texture_transform, nearest filter", 64},
         {"normal-map", "normal-map.gltf", "", "normal map of full and half scale, a directional light", 64},
         {"rough-metal-map", "rough-metal-map.gltf", sky, "metallic-roughness texture", 128},
+        {"brushed", "brushed.gltf", "", "KHR_materials_anisotropy: by tangents, by texture and rotation",
+         512},
         {"alpha", "alpha.gltf", sky, "alpha mask, blend, opaque; their shadows", 256},
         {"vertex-colours", "vertex-colours.gltf", sky, "COLOR_0", 64},
         {"bright-picture", "bright-picture.gltf", "", "emissive texture; one- and two-sided emitters", 256},
@@ -133,6 +135,12 @@ std::vector<MethodCase> make_methods() {
         {"metals", "cache", cache(false), {0.01, 0.1, 0.09}},
         {"coats", "cache --unbiased", cache(true), {0.01, 0.1, 0.09}},
         {"coats", "reproject", reproject("reproject", "radiosity"), {0.03, 0.1, 0.1}},
+        {"brushed", "gather --radiance radiosity", gather("radiosity"), {0.01, 0.08, 0.06}},
+        {"brushed", "reproject", reproject("reproject", "radiosity"), {0.05, 0.5, 0.16}},
+        // A block of black background and the edge of the disk: .08 to .4 off, seed by seed, as without
+        // brushing.
+        {"brushed", "cache", cache(false), {0.01, 0.45, 0.09}},
+        {"brushed", "cache --unbiased", cache(true), {0.01, 0.1, 0.09}},
         {"thin-glass", "gather --radiance path", gather("path"), {0.01, 0.08, 0.06}},
         {"many-lights", "cache", cache(false), {0.01, 0.1, 0.09}},
         {"mirrors", "gather --radiance radiosity", gather("radiosity"), {0.01, 0.08, 0.06}},

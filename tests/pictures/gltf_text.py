@@ -114,3 +114,9 @@ def bumps(u, v):
 def rough_metal(u, v):
     """Roughness (green) grows to the right, metal (blue) stands in two bands."""
     return (0, round(60 + 190 * u), 255 if int(4 * v) % 2 else 0, 255)
+
+
+def brushes(u, v):
+    """The direction of more roughness (red, green) turns from left to right; less of it (blue) below."""
+    angle = 2.4 * u
+    return (round(127.5 * (math.cos(angle) + 1)), round(127.5 * (math.sin(angle) + 1)), round(255 - 160 * v), 255)

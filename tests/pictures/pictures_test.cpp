@@ -71,6 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mutant{"MirroredInsteadOfRepeated", "wraps", "\"wrapS\": 10497", "\"wrapS\": 33648"},
         Mutant{"RepeatedInsteadOfClamped", "wraps", "\"wrapS\": 33071", "\"wrapS\": 10497"},
         Mutant{"RoughnessOff", "metals", "\"roughnessFactor\": 0.65", "\"roughnessFactor\": 0.6"},
+        Mutant{"BrushedLess", "brushed", "\"anisotropyStrength\": 0.6", "\"anisotropyStrength\": 0.5"},
+        Mutant{"BrushesTurned", "brushed", "\"anisotropyRotation\": 0.5", "\"anisotropyRotation\": 0.9"},
         Mutant{"IndexOff", "glass", "\"ior\": 1.33", "\"ior\": 1.4"},
         Mutant{"AbsorptionOff", "glass", "\"attenuationDistance\": 0.7", "\"attenuationDistance\": 0.75"},
         Mutant{"MaskInsteadOfBlend", "alpha", "\"alphaMode\": \"BLEND\"", "\"alphaMode\": \"MASK\""},

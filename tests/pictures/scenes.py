@@ -4,14 +4,15 @@
 They are .gltf with their bytes inside, so that a test can change one word of one and see the picture fail.
 """
 
+import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scenes"))
 
-from glb import MATTE, about, looking, write_pfm  # noqa: E402
-from gltf_text import Gltf, png, painted, letter, holes, bumps, rough_metal, MIRRORED, CLAMPED, REPEATED  # noqa: E402
+from glb import ARRAY_BUFFER, FLOAT, MATTE, about, looking, write_pfm  # noqa: E402
+from gltf_text import Gltf, png, painted, letter, holes, bumps, rough_metal, brushes, MIRRORED, CLAMPED, REPEATED  # noqa: E402
 from shapes import Mesh, ball, box, quad  # noqa: E402
 
 
@@ -288,9 +289,56 @@ def mirrors():
     return gltf
 
 
+def brushed_disk():
+    """A metal disk brushed around its middle, in coordinates that turn with it: tangents lie along the radius,
+    across the brushing."""
+    rings, spokes, radius = 6, 48, 1.15
+    positions, uvs, tangents = [], [], []
+    for i in range(rings + 1):
+        for k in range(spokes + 1):
+            angle, r = 2 * math.pi * k / spokes, 0.08 + (radius - 0.08) * i / rings
+            positions.append((r * math.cos(angle), r * math.sin(angle), 0))
+            uvs.append((i / rings, k / spokes))
+            tangents.append((math.cos(angle), math.sin(angle), 0, 1))
+    triangles = []
+    for i in range(rings):
+        for k in range(spokes):
+            a, b = i * (spokes + 1) + k, (i + 1) * (spokes + 1) + k
+            triangles += [(a, b, b + 1), (a, b + 1, a + 1)]
+    return Mesh(positions, triangles, [(0, 0, 1)] * len(positions), uvs), tangents
+
+
+def brushed():
+    """KHR_materials_anisotropy: a disk by its tangents under points of light; a ball along a texture's direction."""
+    gltf = Gltf(eye=(0, 1.5, 4.2), target=(0, 0.8, 0))
+    ground(gltf, (0.25, 0.25, 0.28))
+    steel = gltf.more(gltf.material("steel", (0.7, 0.7, 0.72), metallic=1, roughness=0.3),
+                      extensions={"KHR_materials_anisotropy": {"anisotropyStrength": 0.6}})
+    disk, tangents = brushed_disk()
+    gltf.mesh("disk", [(disk, steel)], translation=(-0.75, 1.05, -0.3), rotation=about((1, 0, 0), -25),
+              scale=(0.85, 0.85, 0.85))
+    gltf.document["meshes"][-1]["primitives"][0]["attributes"]["TANGENT"] = gltf._accessor(
+        tangents, FLOAT, "VEC4", ARRAY_BUFFER)
+    painted_lacquer = gltf.more(
+        gltf.material("lacquer", (0.5, 0.12, 0.05), metallic=0.3, roughness=0.3),
+        extensions={
+            "KHR_materials_anisotropy": {
+                "anisotropyStrength": 0.9,
+                "anisotropyRotation": 0.5,
+                "anisotropyTexture": {"index": gltf.picture(painted(8, brushes), CLAMPED)}
+            }
+        })
+    gltf.mesh("sheet", [(with_uvs((0.35, 0.02, 0.9), (1.75, 0.02, 0.9), (1.75, 0.9, -0.3), (0.35, 0.9, -0.3)),
+                         painted_lacquer)])
+    for x in (-1.6, 0.2, 1.7):
+        gltf.light("point", (3, 2.7, 2.3), (x, 2.4, 1.8))
+    lamp(gltf, (4, 4, 5), 3.2, 0.5)
+    return gltf
+
+
 SCENES = [
     room, glossy_room, indirect, metals, coats, specular, glass, thin_glass, wraps, texture_transform, normal_map,
-    rough_metal_map, alpha, vertex_colours, bright_picture, punctual, many_lights, instances, orthographic,
+    rough_metal_map, brushed, alpha, vertex_colours, bright_picture, punctual, many_lights, instances, orthographic,
     mirrors
 ]
 
