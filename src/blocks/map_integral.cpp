@@ -99,30 +99,45 @@ void MapIntegral::sum() {
     albedo_ = by_tile.albedo * tile + by_texel.albedo * texel;
 }
 
+/// Fine tiles of more than one point per texel, tier by tier, of which a map leaves some open: the others
+/// show nothing of the environment.
+void MapIntegral::list_open_tiles() {
+    open_tiles_.clear();
+    const auto is_open = [&](std::uint32_t tile) {
+        return std::ranges::any_of(blend_.maps(), [&](const auto& m) { return m.map->open[tile] != 0; });
+    };
+    for (std::size_t t = 1; t < fine_tiers.size(); ++t) {
+        open_begin_[t] = open_tiles_.size();
+        std::copy_if(fine_tiles_.begin() + static_cast<std::ptrdiff_t>(tier_begin_[t]),
+                     fine_tiles_.begin() + static_cast<std::ptrdiff_t>(tier_begin_[t + 1]),
+                     std::back_inserter(open_tiles_), is_open);
+    }
+    open_begin_.back() = open_tiles_.size();
+}
+
 /// What open texels reflect of the environment beyond what their means do: the mean of the product less the
 /// product of the means.
 Spectrum MapIntegral::environment_detail() {
-    const std::size_t begin = tier_begin_[1];  // with one point per texel there is no detail
-    const auto tiles = std::span(fine_tiles_).subspan(begin);
-    if (tiles.empty()) return {};
-    for (auto& plane : detail_) plane.resize(tiles.size() * tile_texels);
+    list_open_tiles();
+    if (open_tiles_.empty()) return {};
+    for (auto& plane : detail_) plane.resize(open_tiles_.size() * tile_texels);
     for (std::size_t t = 1; t < fine_tiers.size(); ++t) {
-        const std::size_t first = tier_begin_[t] - begin, count = tier_begin_[t + 1] - tier_begin_[t];
+        const std::size_t first = open_begin_[t], count = open_begin_[t + 1] - first;
         const auto out = [&](std::size_t c) {
             return std::span(detail_[c]).subspan(first * tile_texels, count * tile_texels);
         };
         evaluate_products(receiver_, normal_, points_.tiers[t], environment_.points[t], points_per_texel(t),
-                          tiles.subspan(first, count), {out(0), out(1), out(2)});
+                          std::span(open_tiles_).subspan(first, count), {out(0), out(1), out(2)});
     }
-    for (std::size_t k = 0; k < tiles.size(); ++k)
+    for (std::size_t k = 0; k < open_tiles_.size(); ++k)
         for (std::size_t i = 0; i < tile_texels; ++i) {
-            const std::size_t at = k * tile_texels + i, from = begin * tile_texels + at;
-            const Spectrum mean = environment_.texels[tiles[k] * tile_texels + i];
+            const std::size_t at = k * tile_texels + i, from = fine_index_[open_tiles_[k]] * tile_texels + i;
+            const Spectrum mean = environment_.texels[open_tiles_[k] * tile_texels + i];
             detail_[0][at] -= texel_bsdf_[0][from] * mean.r;
             detail_[1][at] -= texel_bsdf_[1][from] * mean.g;
             detail_[2][at] -= texel_bsdf_[2][from] * mean.b;
         }
-    return sum_open(blend_, tiles, {{detail_[0].data(), detail_[1].data(), detail_[2].data()}});
+    return sum_open(blend_, open_tiles_, {{detail_[0].data(), detail_[1].data(), detail_[2].data()}});
 }
 
 void MapIntegral::estimate_deviations() {

@@ -52,6 +52,7 @@ class MapIntegral {
     void list_fine_tiles();
     void evaluate_texels();
     void sum();
+    void list_open_tiles();
     [[nodiscard]] Spectrum environment_detail();
     [[nodiscard]] float fine_deviation(std::size_t k, float level) const;
     [[nodiscard]] float bsdf_range(std::size_t k) const;
@@ -71,7 +72,9 @@ class MapIntegral {
     std::array<std::size_t, fine_tiers.size() + 1> tier_begin_{};  // of fine_tiles_
     std::vector<std::uint32_t> fine_index_;                        // by tile
     std::array<std::vector<float>, 3> texel_bsdf_;                 // by fine tile and texel
-    std::array<std::vector<float>, 3> detail_;  // by fine tile and texel, see environment_detail
+    std::vector<std::uint32_t> open_tiles_;                        // of fine_tiles_, see list_open_tiles
+    std::array<std::size_t, fine_tiers.size() + 1> open_begin_{};  // of open_tiles_, by tier
+    std::array<std::vector<float>, 3> detail_;  // by open tile and texel, see environment_detail
     std::vector<TexelSums> texel_sums_;         // by fine tile
     std::vector<float> deviation_;
     ReceiverBsdf receiver_;  // of the last run, and its geometric normal
