@@ -79,6 +79,27 @@ class MapIntegrals : public ::testing::Test {
     const std::vector<BlockMap> white{open_map(stage.grid(), [](std::size_t) { return Spectrum{1}; })};
 };
 
+/// What lets samples of different colour share an integral: the diffuse part alone is another one.
+TEST_F(MapIntegrals, OfALayeredSurfaceAreLinearInItsDiffuseColour) {
+    const BlockMap map = random_map(stage.grid(), 7);
+    const Vertex vertex = vertex_of(plastic(), 0.7f);
+    const auto reflected = [&](const ReceiverBsdf& bsdf) {
+        MapIntegral integral(stage.grid(), points, stage.environment(), false);
+        integral.run(blend_of({map}), bsdf, vertex.point.geometric_normal);
+        return integral.reflected().indirect;
+    };
+    ReceiverBsdf brown = *receiver_bsdf(vertex, world), green = brown, matte = brown;
+    const Spectrum ratio{0.4f, 3, 2};
+    green.diffuse = brown.diffuse * ratio;
+    matte.specular = false;
+    const Spectrum part = reflected(matte), expected = reflected(brown) + part * (ratio - Spectrum{1});
+    const Spectrum found = reflected(green);
+    EXPECT_NEAR(found.r, expected.r, 0.004f * found.r);
+    EXPECT_NEAR(found.g, expected.g, 0.004f * found.g);
+    EXPECT_NEAR(found.b, expected.b, 0.004f * found.b);
+    EXPECT_GT(part.g, 0.1f * found.g);
+}
+
 TEST_F(MapIntegrals, ReflectTheAlbedoInAWhiteFurnace) {
     for (const bool exact : {false, true})
         for (const Bsdf& bsdf : {Bsdf{Lambert{{0.8f, 0.5f, 0.2f}}}, metal(0.07f), metal(0.5f),

@@ -81,6 +81,8 @@ struct PixelResidual {
 /// A thread's memory for one pixel after the other.
 struct Workspace {
     MapIntegral integral;
+    MapIntegral matte;  // of its diffuse part, if has_matte
+    bool has_matte = false;
     ResidualDistribution distribution;
     std::vector<LitSample> samples;  // of the pixel
 };
@@ -274,7 +276,8 @@ class BlockCache final : public Integrator {
                 for (const BlockMap& map : row.maps[j])
                     if (touches(map, cell)) candidates.push_back(&map);
             });
-            Workspace workspace{{grid_, points_, environment_, plan_.exact}, ResidualDistribution(grid_), {}};
+            const MapIntegral integral(grid_, points_, environment_, plan_.exact);
+            Workspace workspace{integral, integral, false, ResidualDistribution(grid_), {}};
             RayCounts rays;
             CacheCounts counts;
             WorkDone dropped;
@@ -341,16 +344,15 @@ class BlockCache final : public Integrator {
             for (std::size_t j = i; j < w.samples.size(); ++j) {
                 LitSample& sample = w.samples[j];
                 if (!sample.pixel->reflects_alone || sample.done
-                    || (j != i && !shares_integral(first, sample)))
+                    || (j != i && !shares_integral(first, sample, plan_.exact)))
                     continue;
                 sample.done = true;
                 sample.maps = static_cast<float>(blend.maps().size());
-                const Spectrum scale = albedo_ratio(first, sample);
-                const MapRadiance held = w.integral.reflected();
-                sample.reflected = {{}, scale * held.direct, scale * held.indirect};
-                sample.albedo = scale * w.integral.albedo();
+                const Spectrum scale = diffuse_ratio(first, sample);
+                take_reflected(first, blend, scale, w, sample);
                 ++counts.points;
-                estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution, scale},
+                estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution,
+                               has_layers(first.bsdf) ? Spectrum{1} : scale},
                               sample.sampled);
             }
             estimator.finish();
@@ -360,9 +362,37 @@ class BlockCache final : public Integrator {
     void integrate(const LitSample& sample, const Blend& blend, Workspace& w, CacheCounts& counts) const {
         const StepTimer timer(counts, CacheStep::shade);
         w.integral.run(blend, sample.bsdf, sample.pixel->cache.gather.frame.n);
+        w.has_matte = false;
         if (plan_.rays.residual == 0) return;
         w.integral.estimate_deviations();
         w.distribution.build(w.integral);
+    }
+
+    /// The integral of `first`, its diffuse part multiplied by `scale`. Where there are layers over it, that
+    /// part is another integral.
+    static void take_reflected(const LitSample& first, const Blend& blend, Spectrum scale, Workspace& w,
+                               LitSample& sample) {
+        const MapRadiance all = w.integral.reflected();
+        const auto scaled = [&](Spectrum whole, Spectrum part) {
+            return whole + (scale - Spectrum{1}) * part;
+        };
+        if (scale == Spectrum{1}) {
+            sample.reflected = {{}, all.direct, all.indirect};
+            sample.albedo = w.integral.albedo();
+        } else if (!has_layers(first.bsdf)) {
+            sample.reflected = {{}, scale * all.direct, scale * all.indirect};
+            sample.albedo = scale * w.integral.albedo();
+        } else {
+            if (!w.has_matte) {
+                ReceiverBsdf matte = first.bsdf;
+                matte.specular = false;
+                w.matte.run(blend, matte, first.pixel->cache.gather.frame.n);
+                w.has_matte = true;
+            }
+            const MapRadiance part = w.matte.reflected();
+            sample.reflected = {{}, scaled(all.direct, part.direct), scaled(all.indirect, part.indirect)};
+            sample.albedo = scaled(w.integral.albedo(), w.matte.albedo());
+        }
     }
 
     /// Adds a sample with all its light; what is to be filtered goes into `residual` instead.

@@ -14,8 +14,6 @@ bool near(Spectrum a, Spectrum b) {
     return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) <= alike * size;
 }
 
-bool lambert(const ReceiverBsdf& b) { return !b.specular && !b.coated; }
-
 bool same_place(const GatherPoint& a, const GatherPoint& b, float footprint) {
     return a.depth == b.depth && dot(a.frame.n, b.frame.n) >= least_cosine
            && std::abs(dot(b.position - a.position, a.frame.n)) <= footprint;
@@ -30,9 +28,8 @@ bool same_orientation(const ReceiverBsdf& a, const ReceiverBsdf& b) {
 
 bool same_lobes(const ReceiverBsdf& a, const ReceiverBsdf& b) {
     return same_orientation(a, b) && std::abs(a.ggx.alpha - b.ggx.alpha) <= alike * a.ggx.alpha
-           && near(a.diffuse, b.diffuse) && near(a.specular_f0, b.specular_f0)
-           && near(a.specular_f90, b.specular_f90) && near(a.coat_f0, b.coat_f0)
-           && near(a.coat_f90, b.coat_f90);
+           && near(a.specular_f0, b.specular_f0) && near(a.specular_f90, b.specular_f90)
+           && near(a.coat_f0, b.coat_f0) && near(a.coat_f90, b.coat_f90);
 }
 
 /// Whether b / a makes sense in every channel.
@@ -43,17 +40,19 @@ bool divides(Spectrum a, Spectrum b) {
 
 }  // namespace
 
-bool shares_integral(const LitSample& a, const LitSample& b) {
+bool shares_integral(const LitSample& a, const LitSample& b, bool exact) {
     if (a.bsdf.specular != b.bsdf.specular || a.bsdf.coated != b.bsdf.coated) return false;
     if (!same_place(a.pixel->cache.gather, b.pixel->cache.gather, a.pixel->cache.footprint)) return false;
     if (dot(a.bsdf.shading_z, b.bsdf.shading_z) < least_cosine) return false;
-    return lambert(a.bsdf) ? divides(a.bsdf.diffuse, b.bsdf.diffuse) : same_lobes(a.bsdf, b.bsdf);
+    const bool like = near(a.bsdf.diffuse, b.bsdf.diffuse);
+    if (!has_layers(a.bsdf)) return divides(a.bsdf.diffuse, b.bsdf.diffuse);
+    return same_lobes(a.bsdf, b.bsdf) && (like || (!exact && divides(a.bsdf.diffuse, b.bsdf.diffuse)));
 }
 
-Spectrum albedo_ratio(const LitSample& a, const LitSample& b) {
-    if (!lambert(a.bsdf)) return Spectrum{1};
-    const auto ratio = [](float from, float to) { return to > 0 ? to / from : 0; };
+Spectrum diffuse_ratio(const LitSample& a, const LitSample& b) {
     const Spectrum from = a.bsdf.diffuse, to = b.bsdf.diffuse;
+    if (has_layers(a.bsdf) && near(from, to)) return Spectrum{1};
+    const auto ratio = [](float x, float y) { return y > 0 ? y / x : 0; };
     return {ratio(from.r, to.r), ratio(from.g, to.g), ratio(from.b, to.b)};
 }
 

@@ -17,11 +17,15 @@ struct LitSample {
     bool done = false;        // has its integral
 };
 
-/// Whether the integral for `a` stands for `b` of the same pixel, but for the colour of a diffuse surface:
-/// the same maps, and lobes that look alike to within much less than their width.
-[[nodiscard]] bool shares_integral(const LitSample& a, const LitSample& b);
+/// Whether the integral for `a` stands for `b` of the same pixel, but for the colour of the diffuse part: the
+/// same maps, and lobes that look alike to within much less than their width. `exact`: that colour may differ
+/// where there is nothing else alone.
+[[nodiscard]] bool shares_integral(const LitSample& a, const LitSample& b, bool exact);
 
-/// How much more `b` reflects than `a`, whose integral it shares.
-[[nodiscard]] Spectrum albedo_ratio(const LitSample& a, const LitSample& b);
+/// Whether a surface reflects otherwise than diffusely.
+[[nodiscard]] inline bool has_layers(const ReceiverBsdf& b) { return b.specular || b.coated; }
+
+/// How much more `b` reflects diffusely than `a`, whose integral it shares.
+[[nodiscard]] Spectrum diffuse_ratio(const LitSample& a, const LitSample& b);
 
 }  // namespace relumine
