@@ -112,7 +112,7 @@ class Partition {
         const DirectionGrid& grid = source_.grid;
         const float pixels =
             static_cast<float>(group.size()) / static_cast<float>(settings_.samples_per_pixel);
-        const float rays = std::max(settings_.rays_per_pixel * pixels, least_rays);
+        const float rays = std::clamp(settings_.rays_per_pixel * pixels, least_rays, settings_.most_rays);
         float sum = 0;
         for (const float weight : weights_) sum += weight;
         TileRays tile_rays(grid.tiles);

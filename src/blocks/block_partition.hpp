@@ -20,8 +20,9 @@ struct BlockPoint {
 struct BlockSettings {
     int largest = 16, smallest = 4;  // pixels along a block's side; powers of two, largest ≤ cell_pixels
     float tolerance = 0.05f;  // of the parallax error that makes a block split, relative to what is reflected
-    float rays_per_pixel = 24;     // that small groups are worth
-    float level = 0;               // radiance that errors are relative to where there is less
+    float rays_per_pixel = 24;  // that small groups are worth
+    float most_rays = 10000;    // that any group is: records around add to a map, and many blocks are divided
+    float level = 0;            // radiance that errors are relative to where there is less
     float min_cos_normals = 0.9f;  // between the anchor's geometric normal and the other samples'
     int samples_per_pixel = 1;     // of those that share maps
 };

@@ -170,6 +170,41 @@ TEST(BlockPartition, SplitsWhereSurfacesMeet) {
     EXPECT_EQ(maps_of(stage, floor_of(cell_pixels), loose).size(), 1u);
 }
 
+TEST(BlockPartition, NoGroupHasMoreRaysThanAreAllowed) {
+    const MapStage stage({wall_beside_floor}, even_sky(Spectrum{1}), 64);
+    const Samples samples = floor_of(cell_pixels);
+    const auto most = [&](float allowed) {
+        const FlushDenormals flush;
+        BlockSettings settings;
+        settings.most_rays = allowed;
+        RayCounts rays;
+        std::size_t found = 0;
+        for (const MapRecord& r : make_records(stage.source(), cell, samples.blocks, settings, rays))
+            found = std::max(found, r.seen.size() + r.open.size());
+        return found;
+    };
+    EXPECT_GT(most(10000), 1500u);
+    EXPECT_LT(most(400), 1000u);  // tiles have 1, 4 or 16
+}
+
+/// Where a block is divided, what its rays have met is kept, but no map is made of it.
+TEST(BlockPartition, DividedBlocksLeaveTheirRecords) {
+    const FlushDenormals flush;
+    const MapStage stage({wall_beside_floor}, even_sky(Spectrum{1}), 32);
+    const Samples samples = floor_of(cell_pixels);
+    BlockSettings settings;
+    RayCounts rays;
+    const auto records = make_records(stage.source(), cell, samples.blocks, settings, rays);
+    std::size_t kept = 0, divided = 0;
+    for (const MapRecord& r : records) {
+        kept += r.seen.size() + r.open.size();
+        divided += !r.has_map;
+    }
+    EXPECT_GT(divided, 0u);
+    EXPECT_EQ(kept, rays.by_purpose[static_cast<std::size_t>(RayPurpose::record)]);
+    EXPECT_EQ(maps_of(stage, samples).size(), records.size() - divided);
+}
+
 TEST(BlockPartition, AnEmptyCellHasNoMaps) {
     const MapStage stage({}, even_sky(Spectrum{1}), 16);
     EXPECT_TRUE(maps_of(stage, {}).empty());
