@@ -123,21 +123,36 @@ void MapFill::add_own(const MapRecord& record) {
     for (const OpenDirection& open : record.open) add_open(open);
 }
 
-void MapFill::add_other(const MapRecord& other, Vec3 eye) {
+/// In which tiles a projected point or an open direction of `other` may be hidden from `eye`.
+void MapFill::find_hidden(const MapRecord& other, Vec3 eye) {
+    hides_.assign(grid_.tiles, 0);
     const float moves = length(other.anchor.position - eye) / most_parallax;  // nearer occluders do
-    project_points(grid_, other, eye, projected_);
-    const auto occluder = [&](std::uint32_t texel) {
-        const std::uint32_t i = nearest_[texel / tile_texels];
+    const auto occluder = [&](std::size_t tile) {
+        const std::uint32_t i = nearest_[tile];
         return i != none && own_->seen[i].distance < moves ? i : none;
     };
     for (std::size_t i = 0; i < other.seen.size(); ++i) {
-        const std::uint32_t texel = projected_.texels[i], near = occluder(texel);
-        if (near != none && lies_behind(*own_, near, other, i)) continue;
+        const std::size_t tile = projected_.texels[i] / tile_texels;
+        const std::uint32_t near = occluder(tile);
+        if (near != none && lies_behind(*own_, near, other, i)) hides_[tile] = 1;
+    }
+    for (const OpenDirection& open : other.open) {
+        const std::size_t tile = open.run.through / tile_texels;
+        if (occluder(tile) != none) hides_[tile] = 1;
+    }
+}
+
+void MapFill::add_other(const MapRecord& other, Vec3 eye) {
+    project_points(grid_, other, eye, projected_);
+    find_hidden(other, eye);
+    for (std::size_t i = 0; i < other.seen.size(); ++i) {
+        const std::uint32_t texel = projected_.texels[i];
+        if (hides_[texel / tile_texels]) continue;
         const float growth = sqr(other.seen[i].distance) / std::max(projected_.distances2[i], 1e-30f);
         add_point(texel, other.seen[i], std::clamp(growth, 1 / most_growth, most_growth));
     }
     for (const OpenDirection& open : other.open)
-        if (occluder(open.run.through) == none) add_open(open);
+        if (!hides_[open.run.through / tile_texels]) add_open(open);
 }
 
 MapFill::Sum MapFill::sum_of(std::uint32_t first, std::uint32_t count) const {

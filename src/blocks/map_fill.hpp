@@ -22,8 +22,9 @@ class MapFill {
     /// A texel is known if a ray of `record` stands for it or a point of `others` appears in it. It holds the
     /// mean of what is in it; where nothing is, that of the smallest square around it that is not empty,
     /// among the texels that its ray stands for. Of `others` counts what the anchor of `record` sees as
-    /// well, as far as its own rays tell: all that is not behind the nearest that they have met around that
-    /// direction, and the rest where that nearest hardly moves from one anchor to the other.
+    /// well, as far as its own rays tell: what is not behind the nearest that they have met around that
+    /// direction, and the rest where that nearest hardly moves from one anchor to the other. Of each other
+    /// record a tile counts as a whole or not at all, or else near things would count more than far ones.
     void run(const MapRecord& record, std::span<const MapRecord* const> others, bool reflects, BlockMap& map);
 
     /// By texel: how far what `record`'s rays have met is, metres; infinite where nothing is known.
@@ -42,6 +43,7 @@ class MapFill {
     void find_nearest(const MapRecord& record);
     void add_own(const MapRecord& record);
     void add_other(const MapRecord& other, Vec3 eye);
+    void find_hidden(const MapRecord& other, Vec3 eye);
     void add_point(std::uint32_t texel, const SeenRadiance& seen, float weight);
     void add_open(const OpenDirection& open);
     void spread(const MapRecord& record, BlockMap& map) const;
@@ -53,6 +55,7 @@ class MapFill {
     const DimEnvironment& environment_;
     std::vector<std::uint32_t> right_, below_;  // by tile: its neighbours
     std::vector<Sum> sums_;                     // by texel
+    std::vector<std::uint8_t> hides_;           // by tile: something of the other record may be hidden
     const MapRecord* own_ = nullptr;
     std::vector<std::uint32_t> nearest_;  // by tile: of own_, the nearest met in it and in those around it
     ProjectedPoints projected_;

@@ -12,7 +12,7 @@ constexpr float least_blurred_error = 0.01f;
 
 CachePlan cache_plan(const RenderSettings& s) {
     constexpr float usual_error = 0.02f, usual_tolerance = 0.2f, usual_residual = 8, usual_light = 16,
-                    usual_rays_per_pixel = 8, usual_most_rays = 400;
+                    usual_rays_per_pixel = 12, usual_most_rays = 800;
     constexpr std::size_t usual_reprojected = 32;
     const float finer = usual_error / s.error, pixel_samples = static_cast<float>(s.samples_per_pixel);
     const auto chosen = [&](int wanted, float usual) {
@@ -34,7 +34,7 @@ CachePlan cache_plan(const RenderSettings& s) {
 CachePlan block_gather_plan(const RenderSettings& s) {
     CachePlan plan = cache_plan(s);
     plan.blocks.largest = plan.blocks.smallest = 8;
-    plan.blocks.rays_per_pixel *= 3;  // of its own, since there are no others
+    plan.blocks.rays_per_pixel *= 2;  // of its own, since there are no others
     plan.blocks.most_rays = BlockSettings{}.most_rays;
     plan.rays.residual = 0;
     plan.reprojected = 0;
