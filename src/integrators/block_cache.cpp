@@ -133,14 +133,12 @@ class BlockCache final : public Integrator {
         for (int y = region_.y0 - 2 * cell_pixels; y < region_.y1 + 2 * cell_pixels && !p.stop();
              y += cell_pixels) {
             rows.push_back(traced_row(y, p));
-            if (rows.size() > rows_alive) {
-                maps_.give_back(rows.front());
-                rows.pop_front();
-            }
+            if (rows.size() > rows_alive) rows.pop_front();
             if (rows.size() > lit_row) fill_row(rows, rows.size() - 2, p);
             if (rows.size() < rows_alive) continue;
             light_row(rows, p);
             rows[lit_row].samples.clear();  // others need the records and maps alone
+            maps_.give_back(rows[lit_row - 1]);
             if (p.progress) p.progress(static_cast<double>(y - cell_pixels - region_.y0) / region_.height());
         }
         for (CellRow& row : rows) maps_.give_back(row);
