@@ -27,8 +27,9 @@ struct BlockSettings {
     int samples_per_pixel = 1;     // of those that share maps
 };
 
-/// The records of a cell, one per map: its samples in groups of similar position and normal, in blocks as
-/// large as the parallax of what they see allows. A function of the cell's samples alone.
+/// The records of a cell: its samples in groups of similar position and normal, in blocks as large as the
+/// parallax of what they see allows. Blocks that were too large leave a record, too, of which no map is to be
+/// made. A function of the cell's samples alone.
 [[nodiscard]] std::vector<MapRecord> make_records(const MapSource& source, const PixelRect& cell,
                                                   std::span<const BlockPoint> points,
                                                   const BlockSettings& settings, RayCounts& rays);

@@ -44,9 +44,9 @@ bool shares_integral(const LitSample& a, const LitSample& b, bool exact) {
     if (a.bsdf.specular != b.bsdf.specular || a.bsdf.coated != b.bsdf.coated) return false;
     if (!same_place(a.pixel->cache.gather, b.pixel->cache.gather, a.pixel->cache.footprint)) return false;
     if (dot(a.bsdf.shading_z, b.bsdf.shading_z) < least_cosine) return false;
-    const bool like = near(a.bsdf.diffuse, b.bsdf.diffuse);
-    if (!has_layers(a.bsdf)) return divides(a.bsdf.diffuse, b.bsdf.diffuse);
-    return same_lobes(a.bsdf, b.bsdf) && (like || (!exact && divides(a.bsdf.diffuse, b.bsdf.diffuse)));
+    const bool scales = divides(a.bsdf.diffuse, b.bsdf.diffuse);
+    if (!has_layers(a.bsdf)) return scales;
+    return same_lobes(a.bsdf, b.bsdf) && (near(a.bsdf.diffuse, b.bsdf.diffuse) || (scales && !exact));
 }
 
 Spectrum diffuse_ratio(const LitSample& a, const LitSample& b) {
