@@ -11,6 +11,9 @@
 
 namespace relumine {
 
+/// The axes of all maps are the world's.
+inline constexpr Frame map_frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
 /// Radiance by texel of the world's grid, one plane per channel; what is bright is not in it.
 struct RadiancePlanes {
     std::array<std::vector<float>, 3> texels;      // W·sr⁻¹·m⁻²; 0 where unknown

@@ -8,8 +8,7 @@ namespace relumine {
 namespace {
 
 /// Radians that an occluder may move between two anchors for what is behind it to count all the same: about
-/// a tile's side (.22). With .2 there is a tenth more noise, with no bound at all indirect light in the room
-/// of scenes/interior.glb is 2 % too dark.
+/// a tile's side (.22). Less leaves more noise, much more darkens.
 constexpr float most_parallax = 0.3f;
 
 /// Off a tangent plane, against the distance from where it touches: a point that is no farther behind it is
@@ -35,8 +34,9 @@ bool lies_behind(const MapRecord& record, std::uint32_t near, const MapRecord& o
 
 }  // namespace
 
-std::vector<const MapRecord*> records_around(const MapRecord& record,
-                                             std::span<const MapRecord* const> candidates, std::size_t most) {
+std::vector<const MapRecord*> nearest_records(const MapRecord& record,
+                                              std::span<const MapRecord* const> candidates,
+                                              std::size_t most) {
     struct Found {
         float distance2;
         const MapRecord* record;

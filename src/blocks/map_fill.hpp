@@ -10,9 +10,9 @@ namespace relumine {
 
 /// The records of `candidates` whose anchors are nearest to that of `record`, which is not among them, and
 /// of its depth; at most `most`, in an order that depends on nothing but the records.
-[[nodiscard]] std::vector<const MapRecord*> records_around(const MapRecord& record,
-                                                           std::span<const MapRecord* const> candidates,
-                                                           std::size_t most);
+[[nodiscard]] std::vector<const MapRecord*> nearest_records(const MapRecord& record,
+                                                            std::span<const MapRecord* const> candidates,
+                                                            std::size_t most);
 
 /// Fills one map after the other without allocating.
 class MapFill {

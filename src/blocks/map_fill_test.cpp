@@ -155,17 +155,17 @@ TEST(MapFill, InACornerEverythingIsSeen) {
     EXPECT_GT(seen, static_cast<int>(other.seen.size()) * 9 / 10);
 }
 
-TEST(RecordsAround, AreTheNearestOfTheSameDepth) {
+TEST(NearestRecords, AreTheNearestOfTheSameDepth) {
     std::vector<MapRecord> records(6);
     for (std::size_t i = 0; i < records.size(); ++i)
         records[i].anchor = gather_point({static_cast<float>(i), 0, 0}, {0, 0, 1});
     records[3].anchor.depth = 2;
     std::vector<const MapRecord*> pointers;
     for (const MapRecord& record : records) pointers.push_back(&record);
-    EXPECT_EQ(records_around(records[2], pointers, 3),
+    EXPECT_EQ(nearest_records(records[2], pointers, 3),
               (std::vector<const MapRecord*>{&records[1], &records[0], &records[4]}));
-    EXPECT_EQ(records_around(records[3], pointers, 3), std::vector<const MapRecord*>{});
-    EXPECT_EQ(records_around(records[0], pointers, 10).size(), 4u);
+    EXPECT_EQ(nearest_records(records[3], pointers, 3), std::vector<const MapRecord*>{});
+    EXPECT_EQ(nearest_records(records[0], pointers, 10).size(), 4u);
 }
 
 }  // namespace

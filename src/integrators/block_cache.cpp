@@ -3,15 +3,12 @@
 // rays; then the filter over what the residual rays have found.
 #include "integrators/block_cache.hpp"
 
-#include <deque>
 #include <mutex>
 
 #include "base/executor.hpp"
 #include "base/pixel_rect.hpp"
-#include "blocks/block_partition.hpp"
 #include "blocks/dim_environment.hpp"
-#include "blocks/map_fill.hpp"
-#include "integrators/cache_plan.hpp"
+#include "integrators/cell_rows.hpp"
 #include "integrators/gather_estimate.hpp"
 #include "integrators/light_source.hpp"
 #include "integrators/lit_sample.hpp"
@@ -25,7 +22,6 @@ namespace {
 
 constexpr std::uint32_t samples_per_pass = 16;  // that share maps
 constexpr int filter_levels = 3, bright_filter_levels = 1;
-constexpr Frame world{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /// Radiance over which light is bright, and below which relative errors do not matter, against the
 /// environment's mean.
@@ -33,43 +29,6 @@ constexpr float bright_factor = 128, least_level = 0.05f;
 
 /// Texels along each side of the world's square.
 constexpr int grid_side = 64;
-
-/// A row of cells: its camera hits, the records that they made, and the maps that they share.
-struct CellRow {
-    PixelRect rect;
-    std::vector<std::unique_ptr<GBuffer>> samples;
-    std::vector<std::vector<MapRecord>> records;  // by cell
-    std::vector<std::vector<BlockMap>> maps;      // by cell
-
-    [[nodiscard]] std::size_t cells() const { return records.size(); }
-};
-
-/// What is alive at a time: maps need the records of the rows beside theirs, pixels the maps of the rows
-/// beside theirs.
-constexpr std::size_t rows_alive = 5, lit_row = 2;
-using RowWindow = std::deque<CellRow>;
-
-/// Maps that are not used at the moment, with their memory.
-class MapStore {
-  public:
-    [[nodiscard]] BlockMap take() {
-        const std::lock_guard lock(mutex_);
-        if (maps_.empty()) return {};
-        BlockMap map = std::move(maps_.back());
-        maps_.pop_back();
-        return map;
-    }
-    void give_back(CellRow& row) {
-        const std::lock_guard lock(mutex_);
-        for (auto& cell : row.maps)
-            for (BlockMap& map : cell) maps_.push_back(std::move(map));
-        row.maps.clear();
-    }
-
-  private:
-    std::mutex mutex_;
-    std::vector<BlockMap> maps_;
-};
 
 /// What the filter needs of a pixel beside its guide.
 struct PixelResidual {
@@ -129,19 +88,16 @@ class BlockCache final : public Integrator {
         pixels_.assign(count(region_), {});
         residuals_.assign(plan_.filters ? count(region_) : 0, {});
         guides_.assign(plan_.filters ? count(region_) : 0, {});
-        RowWindow rows;
-        for (int y = region_.y0 - 2 * cell_pixels; y < region_.y1 + 2 * cell_pixels && !p.stop();
-             y += cell_pixels) {
-            rows.push_back(traced_row(y, p));
-            if (rows.size() > rows_alive) rows.pop_front();
-            if (rows.size() > lit_row) fill_row(rows, rows.size() - 2, p);
-            if (rows.size() < rows_alive) continue;
+        constexpr int margin = CellRows::reach * cell_pixels;
+        const MapSource maps{map_source_, split_, grid_, environment_};
+        CellRows rows({transport_, view_, surface_layers_, max_depth_, maps}, plan_, region_);
+        for (int y = region_.y0 - margin; y < region_.y1 + margin && !p.stop(); y += cell_pixels) {
+            rows.take_in(y, p);
+            if (!rows.ready()) continue;
             light_row(rows, p);
-            rows[lit_row].samples.clear();  // others need the records and maps alone
-            maps_.give_back(rows[lit_row - 1]);
+            rows.release();
             if (p.progress) p.progress(static_cast<double>(y - cell_pixels - region_.y0) / region_.height());
         }
-        for (CellRow& row : rows) maps_.give_back(row);
         if (plan_.filters) filter(p);  // after a stop, too: what is lit may be all there is to show
     }
 
@@ -174,106 +130,14 @@ class BlockCache final : public Integrator {
                + static_cast<std::size_t>(x - region_.x0);
     }
 
-    /// The row of cells from y on, two cells wider than the region where the frame is; empty outside of it.
-    CellRow traced_row(int y, Preparation& p) const {
-        CellRow row;
-        row.rect =
-            intersection({region_.x0 - 2 * cell_pixels, y, region_.x1 + 2 * cell_pixels, y + cell_pixels},
-                         {0, 0, view_.width, view_.height});
-        if (row.rect.y0 >= row.rect.y1) return row;
-        for (std::uint32_t s = p.first_sample; s < p.first_sample + p.sample_count; ++s)
-            row.samples.push_back(std::make_unique<GBuffer>(transport_, view_, row.rect, s, max_depth_,
-                                                            surface_layers_, p.threads, p.rays));
-        row.records.resize(static_cast<std::size_t>((row.rect.width() + cell_pixels - 1) / cell_pixels));
-        BlockSettings blocks = plan_.blocks;
-        blocks.samples_per_pixel = static_cast<int>(p.sample_count);
-        const MapSource source{map_source_, split_, grid_, environment_};
-        std::mutex mutex;
-        parallel_for(p.threads, row.cells(), [&](std::size_t i) {
-            if (p.stop()) return;
-            RayCounts rays;
-            CacheCounts counts;
-            {
-                const StepTimer timer(counts, CacheStep::create);
-                const PixelRect cell = cell_of(row, i);
-                row.records[i] = make_records(source, cell, points_of(row, cell), blocks, rays);
-            }
-            for (const MapRecord& record : row.records[i]) counts.record_bytes += record.bytes();
-            counts.records = row.records[i].size();
-            const std::lock_guard lock(mutex);
-            p.rays.add(rays);
-            p.counts.add(counts);
-        });
-        return row;
-    }
-
-    /// Makes the maps of rows[at] from the records of its cells and of those around them.
-    void fill_row(RowWindow& rows, std::size_t at, Preparation& p) {
-        CellRow& row = rows[at];
-        row.maps.resize(row.cells());
-        std::mutex mutex;
-        parallel_for(p.threads, row.cells(), [&](std::size_t i) {
-            if (p.stop()) return;
-            CacheCounts counts;
-            {
-                const StepTimer timer(counts, CacheStep::reproject);
-                const std::vector<const MapRecord*> around =
-                    plan_.reprojected > 0 ? near_records(rows, at, i) : std::vector<const MapRecord*>{};
-                MapFill fill(grid_, environment_);
-                for (const MapRecord& record : row.records[i]) {
-                    if (!record.has_map) continue;
-                    const auto others = records_around(record, around, plan_.reprojected);
-                    fill.run(record, others, map_source_.reflects(), row.maps[i].emplace_back(maps_.take()));
-                    counts.reprojections += others.size();
-                }
-            }
-            const std::lock_guard lock(mutex);
-            p.counts.add(counts);
-        });
-    }
-
-    static std::vector<const MapRecord*> near_records(const RowWindow& rows, std::size_t at, std::size_t i) {
-        std::vector<const MapRecord*> records;
-        for_cells_around(rows, at, i, [&](const CellRow& row, std::size_t j) {
-            for (const MapRecord& record : row.records[j]) records.push_back(&record);
-        });
-        return records;
-    }
-
-    /// Calls use(row, cell) for a cell and the up to eight around it.
-    template <typename Use>
-    static void for_cells_around(const RowWindow& rows, std::size_t at, std::size_t i, const Use& use) {
-        for (std::size_t r = at - std::min<std::size_t>(at, 1); r <= at + 1 && r < rows.size(); ++r)
-            for (std::size_t j = i - std::min<std::size_t>(i, 1); j <= i + 1 && j < rows[r].cells(); ++j)
-                use(rows[r], j);
-    }
-
-    static PixelRect cell_of(const CellRow& row, std::size_t i) {
-        const int x = row.rect.x0 + static_cast<int>(i) * cell_pixels;
-        return {x, row.rect.y0, std::min(x + cell_pixels, row.rect.x1), row.rect.y1};
-    }
-
-    static std::vector<BlockPoint> points_of(const CellRow& row, const PixelRect& cell) {
-        std::vector<BlockPoint> points;
-        for (const auto& samples : row.samples)
-            for (int y = cell.y0; y < cell.y1; ++y)
-                for (int x = cell.x0; x < cell.x1; ++x)
-                    if (const GBufferPixel& pixel = samples->at(x, y); pixel.reflects_alone)
-                        points.push_back({&pixel.cache, *receiver_bsdf(pixel.point->vertex, world)});
-        return points;
-    }
-
-    void light_row(const RowWindow& rows, Preparation& p) {
-        const CellRow& here = rows[lit_row];
+    /// Lights the row that is ready.
+    void light_row(const CellRows& rows, Preparation& p) {
+        const CellRow& here = *rows.ready();
         std::mutex mutex;
         parallel_for(p.threads, here.cells(), [&](std::size_t i) {
-            const PixelRect cell = intersection(cell_of(here, i), region_);
+            const PixelRect cell = intersection(here.cell(i), region_);
             if (cell.x0 >= cell.x1 || p.stop()) return;
-            std::vector<const BlockMap*> candidates;
-            for_cells_around(rows, lit_row, i, [&](const CellRow& row, std::size_t j) {
-                for (const BlockMap& map : row.maps[j])
-                    if (touches(map, cell)) candidates.push_back(&map);
-            });
+            const std::vector<const BlockMap*> candidates = rows.maps_around(i);
             const MapIntegral integral(grid_, points_, environment_, plan_.exact);
             Workspace workspace{integral, integral, false, ResidualDistribution(grid_), {}};
             RayCounts rays;
@@ -293,14 +157,6 @@ class BlockCache final : public Integrator {
         });
     }
 
-    static bool touches(const BlockMap& map, const PixelRect& cell) {
-        const auto apart = [&](float center, int begin, int end) {
-            return center + map.size <= static_cast<float>(begin)
-                   || center - map.size >= static_cast<float>(end);
-        };
-        return !apart(map.center_x, cell.x0, cell.x1) && !apart(map.center_y, cell.y0, cell.y1);
-    }
-
     /// `sums`: of the pixel, empty.
     void light_pixel(const CellRow& row, std::span<const BlockMap* const> candidates, Workspace& w,
                      Tile& sums, RayCounts& rays, CacheCounts& counts) {
@@ -310,7 +166,7 @@ class BlockCache final : public Integrator {
             LitSample& sample = w.samples.emplace_back();
             sample.pixel = &samples->at(x, y);
             if (sample.pixel->reflects_alone)
-                sample.bsdf = *receiver_bsdf(sample.pixel->point->vertex, world);
+                sample.bsdf = *receiver_bsdf(sample.pixel->point->vertex, map_frame);
         }
         light_from_maps(candidates, w, rays, counts);
         PixelResidual residual;
@@ -471,7 +327,6 @@ class BlockCache final : public Integrator {
     DirectionGrid grid_;
     QuadraturePoints points_;
     DimEnvironment environment_;
-    MapStore maps_;
 
     PixelRect region_;  // that the pass computes
     std::vector<PixelSums> pixels_;
