@@ -4,10 +4,10 @@
 
 #include <memory>
 #include <span>
-#include <unordered_map>
 
 #include "cache/record.hpp"
 #include "cache/reproject.hpp"
+#include "cache/sphere_index.hpp"
 
 namespace relumine {
 
@@ -29,6 +29,11 @@ struct Query {
     int x = 0, y = 0;  // pixel, full frame
 };
 
+/// Whether a point at `offset` from a record lies behind what it has seen [Ward88]: below its surface, as a
+/// floor lies below the box that stands on it. What is there the record knows nothing of, not even that it
+/// does not.
+[[nodiscard]] bool is_behind(Vec3 offset, Vec3 record_normal, Vec3 normal);
+
 /// How badly a record suits, from 0 where it is at the point itself; infinite where it must not be used.
 [[nodiscard]] float unsuitability(const CacheEntry& entry, const Query& query, const ReuseLimits& limits);
 
@@ -38,9 +43,7 @@ struct FoundRecord {
     float unsuitability;
 };
 
-/// Records by place: grids of cells of 2^level metres, each record in the up to eight cells that its reach
-/// touches at the level where cells are as large as that. Adding is for one thread; any number may look up at
-/// a time.
+/// Records by the spheres that they reach. Adding is for one thread; any number may look up at a time.
 class RadianceCache {
   public:
     /// Records are numbered from `first_id` on, in the order in which they are added.
@@ -55,8 +58,7 @@ class RadianceCache {
   private:
     std::uint32_t first_id_;
     std::vector<std::unique_ptr<const CacheEntry>> entries_;
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;  // indices of entries
-    std::vector<int> levels_;                                              // those in use, ascending
+    SphereIndex spheres_;  // by index of entries_
 };
 
 /// The most suitable records of all caches, best first, at most limits.records_per_point; equal ones in order

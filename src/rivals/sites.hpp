@@ -3,10 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
-#include "base/vec.hpp"
+#include "cache/sphere_index.hpp"
 
 namespace relumine {
 
@@ -43,8 +42,7 @@ struct FoundSite {
     float weight;
 };
 
-/// Sites by place: grids of cells of 2^level metres, each site in the up to eight cells that its reach
-/// touches. Adding is for one thread; any number may look up at a time.
+/// Sites by the spheres in which they are used. Adding is for one thread; any number may look up at a time.
 class Sites {
   public:
     explicit Sites(float accuracy) : accuracy_(accuracy) {}
@@ -63,15 +61,10 @@ class Sites {
     [[nodiscard]] bool covers(Vec3 position, Vec3 normal, float share) const;
 
   private:
-    template <typename Use>
-    void for_each_near(Vec3 position, const Use& use) const;
-    void put(std::uint32_t id);
-
     float accuracy_;
     std::vector<Site> sites_;
     std::vector<float> unclamped_;  // radius of each
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
-    std::vector<int> levels_;  // in use, ascending
+    SphereIndex spheres_;           // that use them, by index of sites_
 };
 
 }  // namespace relumine
