@@ -7,42 +7,26 @@
 #include <functional>
 #include <string_view>
 
-#include "base/sample_stream.hpp"
 #include "shading/reflectance.hpp"
-#include "shading/sampling.hpp"
-#include "tests/statistics.hpp"
+#include "shading/test_bsdfs.hpp"
 
 namespace relumine {
 namespace {
 
+using testing::cell_integral;
+using testing::coated;
+using testing::Density;
+using testing::direction;
+using testing::directional_albedo;
+using testing::Extremes;
+using testing::ggx;
+using testing::phi_cells;
+using testing::plastic;
+using testing::random_numbers;
+using testing::theta_cells;
+using testing::with_sheen;
+
 constexpr int draws = 400'000;
-constexpr int theta_cells = 40, phi_cells = 40;
-
-LocalDir direction(float cosine, float phi) {
-    const float sine = std::sqrt(1 - sqr(cosine));
-    return {{sine * std::cos(phi), sine * std::sin(phi), cosine}};
-}
-
-Ggx ggx(float alpha) { return {alpha, Masking::correlated}; }
-Ggx ggx(float alpha_x, float alpha_y) { return make_ggx(alpha_x, alpha_y, Masking::correlated); }
-
-/// A dielectric of index 1.5 over `diffuse`, which is not yet divided by the coat's mean transmittance.
-MetallicRoughness plastic(Spectrum diffuse, float alpha) {
-    return {diffuse, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, ggx(alpha)};
-}
-
-CoatedLayers coated(const MetallicRoughness& base, float clearcoat, float alpha) {
-    CoatedLayers layers;
-    layers.base = base;
-    layers.clearcoat = clearcoat;
-    layers.clearcoat_ggx = ggx(alpha);
-    return layers;
-}
-CoatedLayers with_sheen(CoatedLayers layers, Spectrum color, float alpha) {
-    layers.sheen = color;
-    layers.sheen_alpha = alpha;
-    return layers;
-}
 
 struct NamedBsdf {
     const char* name;
@@ -85,29 +69,7 @@ const std::vector<NamedBsdf>& rough_bsdfs() {
 
 constexpr std::array view_cosines{0.98f, 0.6f, 0.15f};
 
-BsdfRandom random_numbers(std::uint64_t seed, std::uint32_t i) {
-    const SampleStream stream{seed, i, 1, PointSet::independent};
-    return {stream.next1(Dim::lobe), stream.next2(Dim::direction)};
-}
-
-using Density = std::function<double(LocalDir)>;
 using Sampler = std::function<std::optional<LocalDir>(BsdfRandom)>;
-
-/// ∫ density over a cell of θ × φ, by the midpoint rule on a grid within the cell.
-double cell_integral(const Density& density, int theta, int phi) {
-    constexpr int fine = 12;
-    const double dtheta = 3.14159265358979 / (theta_cells * fine),
-                 dphi = 2 * 3.14159265358979 / (phi_cells * fine);
-    double sum = 0;
-    for (int i = 0; i < fine; ++i)
-        for (int j = 0; j < fine; ++j) {
-            const double t = (theta * fine + i + 0.5) * dtheta, p = (phi * fine + j + 0.5) * dphi;
-            const double x = std::sin(t) * std::cos(p), y = std::sin(t) * std::sin(p), z = std::cos(t);
-            sum += std::sin(t)
-                   * density({{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}});
-        }
-    return sum * dtheta * dphi;
-}
 
 /// χ² of `draws` samples over the sphere against a density; what is absorbed is a cell of its own.
 double chi_square(const Sampler& sampler, const Density& density) {
@@ -206,17 +168,6 @@ TEST(Bsdf, WeightIsEvalOverPdf) {
         }
 }
 
-/// The share of a white environment's light that is reflected or transmitted towards w_out, by sampling.
-testing::Estimate directional_albedo(const Bsdf& bsdf, LocalDir w_out) {
-    std::vector<double> weights;
-    for (std::uint32_t i = 0; i < 100'000; ++i) {
-        const auto s = sample(bsdf, w_out, random_numbers(3, i));
-        weights.push_back(s ? s->weight.r * s->eta * s->eta
-                            : 0.0);  // undo the radiance scaling of refraction
-    }
-    return testing::estimate(weights);
-}
-
 TEST(Bsdf, NeverReflectsMoreThanArrives) {
     for (const auto& [name, bsdf] : rough_bsdfs())
         for (const float cosine : view_cosines) {
@@ -278,18 +229,6 @@ TEST(Bsdf, SmoothCoatSplitsIntoDeltaAndDiffuse) {
     EXPECT_EQ(delta_probability(without_delta(coat), w_out), 0);
 }
 
-/// The largest and the smallest albedo of white bodies in a white furnace, over views.
-struct Extremes {
-    double least = 1, most = 0;
-    void add(const Bsdf& bsdf, float azimuth = 0) {
-        for (const float cosine : {0.02f, 0.06f, 0.15f, 0.4f, 0.7f, 0.98f}) {
-            const auto [mean, error, count] = directional_albedo(bsdf, direction(cosine, azimuth));
-            least = std::min(least, mean);
-            most = std::max(most, mean - 4 * error);
-        }
-    }
-};
-
 TEST(Bsdf, LayersOverWhiteReflectNoMoreThanArrives) {
     Extremes coats, clearcoats, sheens;
     for (const float alpha : {0.002f, 0.03f, 0.15f, 0.4f, 1.0f}) {
@@ -318,101 +257,6 @@ TEST(Bsdf, FurnaceCatchesCoatsThatTakeNothing) {
     Extremes gained;
     gained.add(layered(white));
     EXPECT_GT(gained.most, 1.03);
-}
-
-TEST(Bsdf, GrazingAlbedoIsAnUpperBoundOfTheLobes) {
-    for (int i = 0; i <= 30; ++i)
-        for (int j = 1; j <= 30; ++j) {
-            const float alpha = std::max(sqr(static_cast<float>(i) / 30), smooth_alpha);
-            const float cosine = sqr(static_cast<float>(j) / 30);
-            const float lobe = lobe_albedo(direction(cosine, 0), ggx(alpha)).f90;
-            EXPECT_GT(grazing_albedo(cosine, alpha), lobe - 0.006f) << alpha << " " << cosine;
-        }
-}
-
-TEST(Bsdf, GrazingAlbedoIsAnUpperBoundOfStretchedLobes) {
-    double excess_of_mean = 0;
-    for (const auto& [x, y] : {std::pair{1.0f, 0.3f}, {0.5f, 0.1f}, {0.3f, 0.002f}, {1.0f, 0.03f}})
-        for (const float cosine : {0.02f, 0.1f, 0.5f})
-            for (const float azimuth : {0.0f, 0.8f, pi / 2}) {
-                const RoughConductor grazing{Spectrum{0}, ggx(x, y)};  // reflects Schlick's term alone
-                const auto [lobe, error, count] = directional_albedo(grazing, direction(cosine, azimuth));
-                EXPECT_GT(grazing_albedo(cosine, grazing.ggx), lobe - 5 * error - 0.002)
-                    << x << " " << y << " " << cosine << " " << azimuth;
-                excess_of_mean = std::max(excess_of_mean, lobe - grazing_albedo(cosine, grazing.ggx.alpha));
-            }
-    EXPECT_GT(excess_of_mean, 0.02);  // the mean α would not do
-}
-
-TEST(Bsdf, StretchedLayersOverWhiteReflectNoMoreThanArrives) {
-    Extremes coats;
-    for (const auto& [x, y] : {std::pair{1.0f, 0.3f}, {0.6f, 0.05f}, {0.2f, 0.002f}})
-        for (const float azimuth : {0.0f, 0.8f, pi / 2})
-            coats.add(layered(coated({Spectrum{1}, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f}, Spectrum{1},
-                                      ggx(x, y)},
-                                     0, 1)),
-                      azimuth);
-    EXPECT_LT(coats.most, 1.001);
-    EXPECT_GT(coats.least, 0.3);  // at grazing views the bound takes more than some azimuths reflect
-}
-
-LocalDir quarter_turn(LocalDir w) { return {{-w.v.y, w.v.x, w.v.z}}; }
-
-TEST(Bsdf, AQuarterTurnSwapsTheRoughnesses) {
-    const auto difference = [](const Bsdf& a, const Bsdf& b) {
-        float most = 0;
-        for (std::uint32_t i = 0; i < 500; ++i) {
-            const LocalDir w_out = direction(0.05f + 0.9f * random_numbers(7, i).lobe, 1),
-                           w_in = direction(0.02f + 0.9f * random_numbers(8, i).lobe,
-                                            2 * pi * random_numbers(8, i).direction.x);
-            const BsdfValue here = evaluate(a, w_out, w_in),
-                            there = evaluate(b, quarter_turn(w_out), quarter_turn(w_in));
-            most = std::max({most, std::abs(here.value.g - there.value.g) / std::max(here.value.g, 1e-3f),
-                             std::abs(here.pdf - there.pdf) / std::max(here.pdf, 1e-3f)});
-        }
-        return most;
-    };
-    const Ggx lobe = ggx(0.4f, 0.1f), turned = ggx(0.1f, 0.4f);
-    EXPECT_LT(difference(RoughConductor{Spectrum{1}, lobe}, RoughConductor{Spectrum{1}, turned}), 1e-4f);
-    EXPECT_LT(difference(RoughDielectric{1.5f, Spectrum{1}, false, lobe},
-                         RoughDielectric{1.5f, Spectrum{1}, false, turned}),
-              1e-4f);
-    EXPECT_GT(difference(RoughConductor{Spectrum{1}, lobe}, RoughConductor{Spectrum{1}, lobe}), 0.5f);
-}
-
-TEST(Bsdf, EqualRoughnessesAreTheIsotropicLobe) {
-    for (const float alpha : {0.002f, 0.1f, 0.77f}) {
-        const Ggx lobe = ggx(alpha, alpha), near = ggx(alpha, alpha * 1.0001f);
-        EXPECT_FALSE(is_anisotropic(lobe));
-        EXPECT_EQ(lobe.alpha, alpha);
-        EXPECT_TRUE(is_anisotropic(near));
-        for (std::uint32_t i = 0; i < 100; ++i) {
-            const LocalDir w_out = direction(0.05f + 0.9f * random_numbers(9, i).lobe, 1);
-            const LocalDir w_in = sample_reflection(lobe, w_out, random_numbers(9, i).direction);
-            if (cos_theta(w_in) <= 0) continue;
-            const BsdfValue a = evaluate(RoughConductor{Spectrum{1}, lobe}, w_out, w_in),
-                            b = evaluate(RoughConductor{Spectrum{1}, near}, w_out, w_in);
-            EXPECT_NEAR(a.value.g, b.value.g, 1e-3f * a.value.g);
-            EXPECT_NEAR(a.pdf, b.pdf, 1e-3f * a.pdf);
-        }
-    }
-}
-
-TEST(Ggx, StretchedFacetsCoverTheSurface) {  // ∫ D cos θ dω = 1
-    for (const auto& [x, y] : {std::pair{0.5f, 0.1f}, {0.2f, 0.9f}, {1.0f, 1.0f}}) {
-        const Density facets = [&](LocalDir m) {
-            return m.v.z > 0 ? double{ggx_density(ggx(x, y), m) * m.v.z} : 0.0;
-        };
-        double area = 0;
-        for (int t = 0; t < theta_cells; ++t)
-            for (int p = 0; p < phi_cells; ++p) area += cell_integral(facets, t, p);
-        EXPECT_NEAR(area, 1, 1e-3) << x << " " << y;
-    }
-}
-
-TEST(Ggx, FacetsLeanFurtherAlongTheRougherAxis) {
-    const Ggx lobe = ggx(0.5f, 0.1f);
-    EXPECT_GT(ggx_density(lobe, direction(0.9f, 0)), 50 * ggx_density(lobe, direction(0.9f, pi / 2)));
 }
 
 TEST(Bsdf, SmoothClearCoatSplitsIntoDeltaAndTheRest) {
