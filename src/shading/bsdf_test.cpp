@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "shading/reflectance.hpp"
-#include "shading/test_bsdfs.hpp"
+#include "tests/bsdfs.hpp"
 
 namespace relumine {
 namespace {

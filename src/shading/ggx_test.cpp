@@ -5,17 +5,17 @@
 #include <gtest/gtest.h>
 
 #include "shading/reflectance.hpp"
-#include "shading/test_bsdfs.hpp"
+#include "tests/bsdfs.hpp"
 
 namespace relumine {
 namespace {
 
-using testing::Density;
-using testing::Extremes;
 using testing::cell_integral;
 using testing::coated;
+using testing::Density;
 using testing::direction;
 using testing::directional_albedo;
+using testing::Extremes;
 using testing::ggx;
 using testing::phi_cells;
 using testing::random_numbers;

@@ -2,7 +2,11 @@
 // BSDFs, directions and integrals over them for the tests of shading.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "base/sample_stream.hpp"
 #include "shading/bsdf.hpp"
