@@ -34,10 +34,10 @@ requires std::is_arithmetic_v<Number> std::string text_of(Number value) { return
 
 Identity settings_identity(const RenderSettings& settings) {
     const auto& [method, samples_per_pixel, pixel_sampling, pixel_filter, sampler, gather_rays,
-                 gather_packets, light_samples, max_depth, radiance, photons, record_size, record_layers,
-                 record_spacing, records_per_point, gap_cell, bsdf_share, error, unbiased, filter_residual,
-                 residual_rays, accuracy, glossy_rays, harmonics, cache_scope, masking, camera, width, height,
-                 crop, threads, seed, aovs] = settings;
+                 gather_packets, light_samples, max_depth, radiance, guide, photons, record_size,
+                 record_layers, record_spacing, records_per_point, gap_cell, bsdf_share, error, unbiased,
+                 filter_residual, residual_rays, accuracy, glossy_rays, harmonics, cache_scope, masking,
+                 camera, width, height, crop, threads, seed, aovs] = settings;
     (void)threads;  // never changes a bit
     return {{"method", text_of(method)},
             {"samples per pixel", text_of(samples_per_pixel)},
@@ -49,6 +49,7 @@ Identity settings_identity(const RenderSettings& settings) {
             {"light samples", text_of(light_samples)},
             {"max depth", text_of(max_depth)},
             {"radiance", text_of(radiance)},
+            {"guide", text_of(guide)},
             {"photons", text_of(photons)},
             {"record size", text_of(record_size)},
             {"record layers", text_of(record_layers)},

@@ -95,6 +95,7 @@ void validate(const RenderSettings& s) {
     check_cache(s);
     check_range("max depth", s.max_depth, -1, million);
     check_name("radiance", s.radiance, {"auto", "emission", "direct", "radiosity", "path"});
+    check_name("guide", s.guide, {"none", "field"});
     check_range("photons", s.photons, -1, std::int64_t{1} << 24);
     check_name("masking", s.masking, {"correlated", "separable"});
     check_range("threads", s.threads, 0, 4096);

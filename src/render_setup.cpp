@@ -109,6 +109,7 @@ void RenderSetup::add_field(const RenderSettings& settings, const std::function<
     transport.caustics = caustics.get();
     field = make_field(settings, transport, view, stop, rays);
     transport.field = field.get();
+    if (wants_guide(settings)) transport.guide = field.get();
 }
 
 }  // namespace relumine

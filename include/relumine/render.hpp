@@ -32,6 +32,8 @@ struct RenderSettings {
     int max_depth = -1;      // scattering vertices of a path; −1: unlimited with Russian roulette
     std::string radiance = "auto";  // methods that gather: "emission", "direct", "radiosity", "path"; auto:
                                     // radiosity where light is reflected more than once
+    std::string guide = "none";  // `path`, `cache` where `unbiased`: what attracts paths besides their BSDFs:
+                                 // "none" or "field", bright surfaces of a radiance field
     int photons = -1;  // methods that use a radiance field: paths from lights for caustics, 0 … 2²⁴; −1: as
                        // many as the method wants, which is none yet. Never where `unbiased`
     int record_size = 64;    // `reproject`, `reproject-mc`, `irradiance-cache`, `radiance-cache`: n, a record

@@ -253,6 +253,7 @@ void add_light_options(CLI::App& app, RenderSettings& s) {
                   refuse_planned_value("--radiance", source);
                   s.radiance = source;
               });
+    add_text(app, {"--guide", "G", "what attracts paths besides BSDFs: none, field"}, s.guide);
     add_number(app, {"--photons", "N", "paths from lights for caustics, beside a radiance field"}, s.photons,
                "none");
     add_text(app, {"--masking", "M", "of microfacets: correlated, separable"}, s.masking);

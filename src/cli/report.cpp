@@ -51,6 +51,7 @@ Json settings_json(const RenderSettings& s, const SceneOptions& scene) {
             {"light_samples", s.light_samples},
             {"max_depth", s.max_depth},
             {"radiance", s.radiance},
+            {"guide", s.guide},
             {"photons", s.photons},
             {"masking", s.masking},
             {"camera", s.camera},

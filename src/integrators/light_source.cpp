@@ -40,7 +40,10 @@ void add_seeds(const Transport& t, const CameraSample& sample, std::uint32_t max
         seeds.push_back({p.position, -p.geometric_normal, p.offset});
 }
 
-bool is_exact(const RenderSettings& settings) { return settings.method == "cache" && settings.unbiased; }
+/// Paths are continued as they are, whatever a field says.
+bool is_exact(const RenderSettings& settings) {
+    return settings.method == "path" || (settings.method == "cache" && settings.unbiased);
+}
 
 }  // namespace
 
@@ -49,8 +52,11 @@ IncidentRadiance incident_source(const RenderSettings& settings, const Transport
             is_exact(settings) ? nullptr : transport.field};
 }
 
+bool wants_guide(const RenderSettings& settings) { return settings.guide == "field" && is_exact(settings); }
+
 bool wants_field(const RenderSettings& settings) {
-    if (settings.method == "path" || (settings.max_depth >= 0 && settings.max_depth < 2)) return false;
+    if (settings.max_depth >= 0 && settings.max_depth < 2) return false;
+    if (settings.method == "path") return wants_guide(settings);
     return settings.radiance == "radiosity" || settings.radiance == "auto";
 }
 
@@ -79,11 +85,14 @@ std::unique_ptr<RadianceField> make_field(const RenderSettings& settings, const 
                       seeds, rays);
         }
     FieldSettings field;
+    field.arrivals = wants_guide(settings);
     field.seed = settings.seed;
     field.threads = resolve_threads(settings.threads);
     field.stop = stop;
+    // A guide's maps hold what elements receive from others, which is a bounce more.
+    const int behind = field.arrivals ? 1 : 2;
     if (settings.max_depth >= 0)
-        field.bounces = static_cast<std::uint32_t>(std::max(settings.max_depth - 2, 0));
+        field.bounces = static_cast<std::uint32_t>(std::max(settings.max_depth - behind, 0));
     return std::make_unique<RadianceField>(transport, seeds, field, rays);
 }
 

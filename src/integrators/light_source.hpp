@@ -17,8 +17,11 @@ namespace relumine {
 [[nodiscard]] IncidentRadiance incident_source(const RenderSettings& settings, const Transport& transport);
 
 /// Whether a method looks light up in a radiance field: `radiosity`, or `auto` where light is reflected more
-/// than once.
+/// than once; or lets one attract paths.
 [[nodiscard]] bool wants_field(const RenderSettings& settings);
+
+/// Whether that field attracts paths.
+[[nodiscard]] bool wants_guide(const RenderSettings& settings);
 
 /// The caustics that go with a field; null where the settings want none, the method is to be unbiased or
 /// nothing in the scene is specular. `stop` may be empty.

@@ -28,15 +28,17 @@ Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
 }
 
 std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex,
-                                                  const LightRandom& u) {
-    const auto light = t.lights.sample(vertex.point.position, u.point);
+                                                  const LightRandom& u, const PathGuide* guide) {
+    const Vec3 from = vertex.point.position;
+    const auto light = guide ? guide->sample_light(t.lights, from, u.point) : t.lights.sample(from, u.point);
     if (!light) return {};
     if (!sides_agree(vertex.point, light->w_in)) return {};
     const auto [value, bsdf_pdf] =
         evaluate(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light->w_in));
     const Spectrum reflected = value * light->radiance;
     if (is_black(reflected)) return {};
-    const float weight = light->delta ? 1 : mis_weight(light->pdf, bsdf_pdf);
+    const float pdf = guide && !light->delta ? guide->pdf(light->w_in, bsdf_pdf) : bsdf_pdf;
+    const float weight = light->delta ? 1 : mis_weight(light->pdf, pdf);
     return LightProposal{shadow_ray(vertex.point, *light, u.opacity_seed), reflected * (weight / light->pdf)};
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/ray_counts.hpp"
-#include "radiance/transport.hpp"
+#include "radiance/path_guide.hpp"
 
 namespace relumine {
 
@@ -32,9 +32,11 @@ struct LightRandom {
 };
 
 /// One sample of the direct light reflected at `vertex`, weighted against BSDF sampling by the power
-/// heuristic, before its shadow ray is traced. Empty where nothing would be reflected.
+/// heuristic, before its shadow ray is traced. Empty where nothing would be reflected. `guide`: what the
+/// vertex draws directions from, if that is not its BSDF alone.
 [[nodiscard]] std::optional<LightProposal> propose_direct_light(const Transport& t, const Vertex& vertex,
-                                                                const LightRandom& u);
+                                                                const LightRandom& u,
+                                                                const PathGuide* guide = nullptr);
 
 /// The reflected light of all point, spot and directional lights, a shadow ray each.
 [[nodiscard]] Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed,

@@ -139,6 +139,8 @@ class ElementTracer {
         if (!is_finite(emission + found)) return;
         const float share = pi / static_cast<float>(settings_.rays);
         add_arriving(view_.light, normal_, direction, (emission + found) * share);
+        if (settings_.arrivals && !hit && !is_black(emission))
+            view_.sky.push_back({direction, luminance(emission) * share});
         if (luminance(found) > 0) view_.finds.push_back(luminance(found));
         if (luminance(found) > strongest_) {
             strongest_ = luminance(found);

@@ -20,9 +20,16 @@ struct Landing {
     std::uint16_t ray = 0;
 };
 
+/// A ray that has met nothing but the sky.
+struct Sight {
+    Vec3 direction;        // as of a landing
+    float irradiance = 0;  // luminance, W·m⁻²
+};
+
 /// What an element's rays have found.
 struct ElementView {
     std::vector<Landing> landings;  // in order of rays
+    std::vector<Sight> sky;         // where the settings want arrivals
     IrradianceVector light;         // what arrives straight from lights or through lobes alone
     IrradianceVector strongest;     // part of it: the most that a single ray found along lobes
     std::vector<float> finds;       // luminance that rays found along lobes, where that is any

@@ -16,9 +16,9 @@ bool survives(PathState& path, float u) {
     return true;
 }
 
-void scatter(PathState& path, const Vertex& vertex, BsdfRandom u, std::uint32_t opacity_seed) {
+void scatter(PathState& path, const Vertex& vertex, const std::optional<BsdfSample>& scattered,
+             std::uint32_t opacity_seed) {
     path.alive = false;
-    const auto scattered = sample(vertex.bsdf, vertex.w_out, u);
     if (!scattered || is_black(scattered->weight)) return;
     const WorldDir w_in = vertex.point.frame.to_world(scattered->w_in);
     if (!sides_agree(vertex.point, w_in)) return;
@@ -53,7 +53,8 @@ Vertex make_vertex(const Transport& t, PathState& path, const SampleStream& stre
 void scatter_path(PathState& path, const Vertex& vertex, const SampleStream& stream) {
     const BsdfRandom u{has_lobes(vertex.bsdf) ? stream.next1(Dim::lobe, path.depth) : 0.0f,
                        stream.next2(Dim::direction, path.depth)};
-    scatter(path, vertex, u, stream.bits(Dim::opacity, 2 * path.depth + 2));
+    scatter(path, vertex, sample(vertex.bsdf, vertex.w_out, u),
+            stream.bits(Dim::opacity, 2 * path.depth + 2));
 }
 
 Spectrum arriving_emission(const Transport& t, const PathState& path, const SurfacePoint* hit_point) {
@@ -61,7 +62,8 @@ Spectrum arriving_emission(const Transport& t, const PathState& path, const Surf
         hit_point ? emitted_radiance(t.scene, *hit_point) : t.lights.environment_radiance(path.ray.direction);
     if (is_black(emitted) || path.bsdf_pdf == 0) return emitted;
     const float light_pdf =
-        hit_point ? t.lights.pdf(path.ray.origin, *hit_point) : t.lights.environment_pdf(path.ray.direction);
+        hit_point ? path.light_share * t.lights.pdf(path.ray.origin, *hit_point)
+                  : path.light_share * t.lights.environment_pdf(path.ray.direction) + path.sky_pdf;
     return emitted * mis_weight(path.bsdf_pdf, light_pdf);
 }
 

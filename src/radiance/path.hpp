@@ -22,6 +22,9 @@ struct PathState {
     bool count_emission =
         true;           // whether what `hit` emits (or the environment at a miss) is still to be counted
     bool alive = true;  // whether there is anything to follow
+    // With which density guides, besides, had drawn the ray's direction as one to a light:
+    // PathGuide::sky_pdf.
+    float sky_pdf = 0, light_share = 1;
 };
 
 inline constexpr std::uint32_t unlimited_depth = 0xffffffffu;
@@ -63,8 +66,9 @@ inline void add(SplitRadiance& sum, std::uint32_t scatterings, Spectrum radiance
 /// Ends paths by their throughput, or makes up for those that were ended.
 [[nodiscard]] bool survives(PathState& path, float u);
 
-/// scatter_path by the given numbers.
-void scatter(PathState& path, const Vertex& vertex, BsdfRandom u, std::uint32_t opacity_seed);
+/// scatter_path with a direction that is drawn already.
+void scatter(PathState& path, const Vertex& vertex, const std::optional<BsdfSample>& drawn,
+             std::uint32_t opacity_seed);
 
 /// Turns the path's ray into a direction drawn from the BSDF; the hit is not known yet. Where the path ends,
 /// it is not alive after.

@@ -3,6 +3,7 @@
 #include "base/sample_packet_kernel.hpp"
 #include "radiance/direct_light.hpp"
 #include "radiance/path_lanes.hpp"
+#include "radiance/radiance_field.hpp"
 #include "shading/material.hpp"
 
 namespace relumine {
@@ -80,6 +81,7 @@ class PathBatch {
     void step(WalkPacket& packet);
     [[nodiscard]] bool arrive(WalkPacket& packet, std::size_t lane);
     void step_plain(WalkPacket& packet, const LaneMask& plain, const StepNumbers& numbers);
+    [[nodiscard]] std::optional<PathGuide> guide_at(const Vertex& vertex) const;
     void advance(WalkPacket& packet, std::size_t lane, const StepNumbers& numbers);
     [[nodiscard]] SplitRadiance& sum_of(PathId id) { return sums_[id.packet][id.lane]; }
     void add_emission(const WalkPacket& packet, std::size_t lane, const SurfacePoint* hit_point);
@@ -92,6 +94,7 @@ class PathBatch {
 
     const Transport& t_;
     const std::uint32_t max_depth_;
+    const bool guided_;  // whether a field knows where light comes from
     std::span<const StreamPacket> streams_;
     std::span<RadiancePacket> sums_;
     RayCounts& rays_;
@@ -107,7 +110,7 @@ class PathBatch {
 
 PathBatch::PathBatch(const Transport& t, std::span<const PathPacket> paths, std::uint32_t max_depth,
                      std::span<const StreamPacket> streams, std::span<RadiancePacket> sums, RayCounts& rays)
-    : t_(t), max_depth_(max_depth), streams_(streams), sums_(sums), rays_(rays) {
+    : t_(t), max_depth_(max_depth), guided_(t.guide != nullptr), streams_(streams), sums_(sums), rays_(rays) {
     packets_.reserve(paths.size());
     for (std::uint32_t p = 0; p < paths.size(); ++p) {
         packets_.emplace_back(paths[p], streams[p], p);
@@ -138,7 +141,7 @@ bool PathBatch::arrive(WalkPacket& packet, std::size_t i) {
     const Hit hit = paths.hit[i];
     const Mesh& mesh = t_.scene.meshes[index(t_.scene.instances[hit.instance].mesh)];
     const MetallicRoughness* layers = t_.uniform_bsdfs.find_layers(mesh.material);
-    if (!layers || !mesh.colors.empty()) return false;
+    if (!layers || !mesh.colors.empty() || guided_) return false;
     if (paths.count_emission[i] != 0 && !is_black(t_.scene.materials[index(mesh.material)].emission)) {
         const SurfacePoint point = surface_point(t_.scene, hit, {-paths.ray.direction[i]});
         add_emission(packet, i, &point);
@@ -151,6 +154,11 @@ bool PathBatch::arrive(WalkPacket& packet, std::size_t i) {
     return true;
 }
 
+std::optional<PathGuide> PathBatch::guide_at(const Vertex& vertex) const {
+    if (!guided_ || is_delta(vertex.bsdf)) return {};
+    return PathGuide(t_.guide->arrivals(vertex.point.position, vertex.point.geometric_normal), vertex);
+}
+
 /// A step of one path whose surface the kernels do not know: counts emission, proposes direct light,
 /// scatters.
 void PathBatch::advance(WalkPacket& packet, std::size_t i, const StepNumbers& numbers) {
@@ -160,15 +168,22 @@ void PathBatch::advance(WalkPacket& packet, std::size_t i, const StepNumbers& nu
     if (path.count_emission)
         add(sum_of(id), path.scatterings, path.throughput * arriving_emission(t_, path, &vertex.point));
     path.alive = depth_ < max_depth_;
+    const std::optional<PathGuide> guide = guide_at(vertex);
     if (path.alive && !is_delta(vertex.bsdf)) {
-        if (const auto light = propose_direct_light(t_, vertex, numbers.light(i))) {
+        if (const auto light =
+                propose_direct_light(t_, vertex, numbers.light(i), guide ? &*guide : nullptr)) {
             shadows_.rays.set(i, light->shadow_ray);
             shadows_.radiance.set(i, path.throughput * light->reflected);
             shadows_.scatterings[i] = path.scatterings + 1;
         }
     }
     if (path.alive) {
-        scatter(path, vertex, numbers.bsdf(i), numbers.scatter.opacity_seed[i]);
+        scatter(path, vertex,
+                guide ? guide->sample(vertex, numbers.bsdf(i))
+                      : sample(vertex.bsdf, vertex.w_out, numbers.bsdf(i)),
+                numbers.scatter.opacity_seed[i]);
+        path.sky_pdf = guide ? guide->sky_pdf(path.ray.direction) : 0;
+        path.light_share = guide ? guide->light_share() : 1;
         path.alive = path.alive && survives(path, numbers.scatter.roulette[i]);
     }
     packet.paths.set(i, path);

@@ -5,9 +5,9 @@
 namespace relumine {
 
 PathState PathLanes::get(std::size_t i, std::uint32_t depth) const {
-    return {ray[i],        hit[i],       depth,       scatterings[i],
-            throughput[i], eta_scale[i], bsdf_pdf[i], count_emission[i] != 0,
-            alive[i] != 0};
+    return {ray[i],        hit[i],       depth,         scatterings[i],
+            throughput[i], eta_scale[i], bsdf_pdf[i],   count_emission[i] != 0,
+            alive[i] != 0, sky_pdf[i],   light_share[i]};
 }
 
 void PathLanes::take(std::size_t i, const PathLanes& other, std::size_t j) {
@@ -17,6 +17,8 @@ void PathLanes::take(std::size_t i, const PathLanes& other, std::size_t j) {
     throughput.take(i, other.throughput, j);
     eta_scale[i] = other.eta_scale[j];
     bsdf_pdf[i] = other.bsdf_pdf[j];
+    sky_pdf[i] = other.sky_pdf[j];
+    light_share[i] = other.light_share[j];
     count_emission[i] = other.count_emission[j];
     alive[i] = other.alive[j];
 }
@@ -34,6 +36,8 @@ void PathLanes::set(std::size_t i, const PathState& path) {
     throughput.set(i, path.throughput);
     eta_scale[i] = path.eta_scale;
     bsdf_pdf[i] = path.bsdf_pdf;
+    sky_pdf[i] = path.sky_pdf;
+    light_share[i] = path.light_share;
     count_emission[i] = path.count_emission ? -1 : 0;
     alive[i] = path.alive ? -1 : 0;
 }

@@ -15,7 +15,7 @@ struct PathLanes {
     HitLanes hit;
     Lanes<std::uint32_t> scatterings;
     SpectrumLanes throughput;
-    Lanes<float> eta_scale, bsdf_pdf;
+    Lanes<float> eta_scale, bsdf_pdf, sky_pdf, light_share;
     LaneMask count_emission, alive;
 
     [[nodiscard]] PathState get(std::size_t lane, std::uint32_t depth) const;

@@ -247,7 +247,9 @@ TEST(PathLanes, ScatteredPathsHaveTheBitsOfSingleOnes) {
         for (std::size_t i = 0; i < packet_size; ++i) {
             const ScatterNumbers& n = packet.numbers;
             PathState path = packet.paths[i];
-            scatter(path, packet.vertices[i], {n.lobe[i], {n.direction_x[i], n.direction_y[i]}}, 0);
+            const Vertex& vertex = packet.vertices[i];
+            const BsdfRandom u{n.lobe[i], {n.direction_x[i], n.direction_y[i]}};
+            scatter(path, vertex, sample(vertex.bsdf, vertex.w_out, u), 0);
             path.alive = path.alive && survives(path, n.roulette[i]);
             ASSERT_EQ(lanes.alive[i] != 0, path.alive);
             if (!path.alive) continue;

@@ -12,9 +12,10 @@
 #include <optional>
 #include <span>
 
+#include "radiance/arrival_map.hpp"
 #include "radiance/bright_cones.hpp"
 #include "radiance/field_neighbors.hpp"
-#include "radiance/transport.hpp"
+#include "radiance/path_guide.hpp"
 
 namespace relumine {
 
@@ -35,7 +36,8 @@ struct FieldSettings {
     int light_samples = 64;   // likewise
     std::size_t most_elements = 300'000;
     std::uint32_t bounces =
-        0xffffffffu;  // of light, after the one that elements receive straight from lights
+        0xffffffffu;        // of light, after the one that elements receive straight from lights
+    bool arrivals = false;  // whether elements keep where their light comes from
     std::uint64_t seed = 0;
     int threads = 1;
     std::function<bool()> stop;  // asked often; true: come to an end soon. May be empty
@@ -47,6 +49,12 @@ struct FieldFigures {
     std::size_t bytes = 0;  // while it is used
     std::size_t iterations = 0;
     double unresolved = 0;  // share of the links that led nowhere
+};
+
+/// Where an element's light comes from: see PlacedArrivals.
+struct ElementArrivals {
+    ArrivalMap surfaces, sky;
+    float sky_share = 0;
 };
 
 class RadianceField {
@@ -63,6 +71,8 @@ class RadianceField {
     /// Whether a surface point is one of those that `bright_cones()` is made for.
     [[nodiscard]] bool is_bright(Vec3 position, Vec3 geometric_normal) const;
     [[nodiscard]] const BrightCones& bright_cones() const { return cones_; }
+    /// Where light at a surface point comes from, as far as the field knows and its settings wanted to.
+    [[nodiscard]] PlacedArrivals arrivals(Vec3 position, Vec3 geometric_normal) const;
     /// Of all that is reflected, over the elements' area; luminance, W·sr⁻¹·m⁻².
     [[nodiscard]] float mean_radiance() const { return mean_radiance_; }
     /// What a ray finds along lobes counts for no more than this; luminance, W·sr⁻¹·m⁻².
@@ -72,10 +82,11 @@ class RadianceField {
     [[nodiscard]] const FieldCells& cells() const { return cells_; }
 
   private:
-    FieldFigures figures_;     // filled while cells_ is made
-    BrightCones cones_;        // likewise
-    float mean_radiance_ = 0;  // likewise
-    float most_found_ = 0;     // likewise
+    FieldFigures figures_;                   // filled while cells_ is made
+    BrightCones cones_;                      // likewise
+    std::vector<ElementArrivals> arrivals_;  // likewise, by element
+    float mean_radiance_ = 0;                // likewise
+    float most_found_ = 0;                   // likewise
     FieldCells cells_;
     FieldNeighbors neighbors_;
 };

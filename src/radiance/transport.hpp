@@ -20,6 +20,7 @@ struct Transport {
     const UniformBsdfs& uniform_bsdfs;
     Masking masking = Masking::correlated;
     const RadianceField* field = nullptr;  // light on surfaces, where a method has asked for it
+    const RadianceField* guide = nullptr;  // attracts paths, where that is wanted
     const CausticMap* caustics = nullptr;  // likewise: holds what specular vertices alone part from lights
 };
 
