@@ -49,6 +49,7 @@ class MapIntegral {
 
   private:
     void evaluate_tiles();
+    void find_lobe_shares();
     void list_fine_tiles();
     void evaluate_texels();
     void sum();
@@ -65,6 +66,8 @@ class MapIntegral {
     bool exact_;
     Blend blend_;                                  // of the last run
     std::array<std::vector<float>, 3> tile_bsdf_;  // 0 but in tiles of tier `one`
+    std::array<std::vector<float>, 3> matte_;      // at the tiles' centres, without the lobe
+    std::vector<float> lobe_share_;                // of f there, by tile
     std::vector<float> luminance_, variance_;      // of radiance, by tile
     std::vector<std::uint16_t> known_;             // by tile: texels that all maps know
     std::vector<TileTier> tiers_;
