@@ -9,6 +9,7 @@
 #include "base/pixel_rect.hpp"
 #include "blocks/dim_environment.hpp"
 #include "integrators/cell_rows.hpp"
+#include "integrators/error_prediction.hpp"
 #include "integrators/gather_estimate.hpp"
 #include "integrators/light_source.hpp"
 #include "integrators/lit_sample.hpp"
@@ -21,7 +22,10 @@ namespace relumine {
 namespace {
 
 constexpr std::uint32_t samples_per_pass = 16;  // that share maps
-constexpr int filter_levels = 3, bright_filter_levels = 1;
+constexpr int filter_levels = 3;
+
+/// What maps are wrong by after filtered residual rays, against MapIntegral::deviation(); without any [sim].
+constexpr float deviation_left = 0.05f, deviation_alone = 0.2f;
 
 /// Radiance over which light is bright, and below which relative errors do not matter, against the
 /// environment's mean.
@@ -32,7 +36,7 @@ constexpr int grid_side = 64;
 
 /// What the filter needs of a pixel beside its guide.
 struct PixelResidual {
-    MapRadiance residual;
+    Spectrum direct, indirect;  // dim
     Spectrum bright;
     Spectrum albedo;  // directional, times the throughput of what is before
 };
@@ -58,6 +62,7 @@ class BlockCache final : public Integrator {
         : transport_(transport),
           view_(view),
           surface_layers_(surface_layers),
+          predicts_(std::ranges::find(settings.aovs, "error") != settings.aovs.end()),
           plan_(plan),
           max_depth_(depth_limit(settings)),
           source_(incident_source(settings, transport)),
@@ -76,7 +81,8 @@ class BlockCache final : public Integrator {
 
     [[nodiscard]] bool works_in_preparation() const override { return true; }
     [[nodiscard]] std::uint64_t known_bytes() const override {  // maps are not
-        const std::size_t filtered = plan_.filters ? sizeof(PixelResidual) + sizeof(FilterGuide) : 0;
+        const std::size_t filtered = (plan_.filters ? sizeof(PixelResidual) : 0)
+                                     + (estimates_noise() ? sizeof(FilterGuide) + sizeof(PixelDoubt) : 0);
         const auto row =
             static_cast<std::size_t>(std::min(view_.window.width() + 5 * cell_pixels, view_.width));
         return count(region()) * (sizeof(PixelSums) + filtered)
@@ -87,7 +93,8 @@ class BlockCache final : public Integrator {
         region_ = region();
         pixels_.assign(count(region_), {});
         residuals_.assign(plan_.filters ? count(region_) : 0, {});
-        guides_.assign(plan_.filters ? count(region_) : 0, {});
+        guides_.assign(estimates_noise() ? count(region_) : 0, {});
+        doubts_.assign(estimates_noise() ? count(region_) : 0, {});
         constexpr int margin = CellRows::reach * cell_pixels;
         const MapSource maps{map_source_, split_, grid_, environment_};
         CellRows rows({transport_, view_, surface_layers_, max_depth_, maps}, plan_, region_);
@@ -98,7 +105,7 @@ class BlockCache final : public Integrator {
             rows.release();
             if (p.progress) p.progress(static_cast<double>(y - cell_pixels - region_.y0) / region_.height());
         }
-        if (plan_.filters) filter(p);  // after a stop, too: what is lit may be all there is to show
+        add_found(p);  // after a stop, too: what is lit may be all there is to show
     }
 
     void render(Tile& tile) const override {
@@ -120,10 +127,14 @@ class BlockCache final : public Integrator {
     static std::size_t count(const PixelRect& r) {
         return static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height());
     }
+    /// Whether pixels must know their surroundings.
+    [[nodiscard]] bool estimates_noise() const { return plan_.filters || predicts_; }
     /// What a pass computes: the window, and what its filter reaches.
     [[nodiscard]] PixelRect region() const {
-        return intersection(aligned(grown(view_.window, plan_.filters ? filter_reach(filter_levels) : 0)),
-                            {0, 0, view_.width, view_.height});
+        const int reach = plan_.filters ? smoothing_reach(filter_levels)
+                          : predicts_   ? filter_reach(noise_levels)
+                                        : 0;
+        return intersection(aligned(grown(view_.window, reach)), {0, 0, view_.width, view_.height});
     }
     [[nodiscard]] std::size_t index_of(int x, int y) const {
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width())
@@ -170,10 +181,12 @@ class BlockCache final : public Integrator {
         }
         light_from_maps(candidates, w, rays, counts);
         PixelResidual residual;
-        for (const LitSample& sample : w.samples) finish_sample(sample, sums, residual, rays);
+        DoubtSum doubt;
+        for (const LitSample& sample : w.samples) finish_sample(sample, sums, residual, doubt, rays);
         pixels_[index_of(x, y)] = sums.pixels[0];
-        if (!plan_.filters) return;
-        residuals_[index_of(x, y)] = residual;
+        if (plan_.filters) residuals_[index_of(x, y)] = residual;
+        if (!estimates_noise()) return;
+        doubts_[index_of(x, y)] = doubt.finish();
         guides_[index_of(x, y)] = guide_of(row, x, y);
     }
 
@@ -204,6 +217,7 @@ class BlockCache final : public Integrator {
                 sample.maps = static_cast<float>(blend.maps().size());
                 const Spectrum scale = diffuse_ratio(first, sample);
                 take_reflected(first, blend, scale, w, sample);
+                if (estimates_noise()) sample.deviation = luminance(scale) * w.integral.deviation();
                 ++counts.points;
                 estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution,
                                has_layers(first.bsdf) ? Spectrum{1} : scale},
@@ -217,9 +231,8 @@ class BlockCache final : public Integrator {
         const StepTimer timer(counts, CacheStep::shade);
         w.integral.run(blend, sample.bsdf, sample.pixel->cache.gather.frame.n);
         w.has_matte = false;
-        if (plan_.rays.residual == 0) return;
-        w.integral.estimate_deviations();
-        w.distribution.build(w.integral);
+        if (plan_.rays.residual > 0 || estimates_noise()) w.integral.estimate_deviations();
+        if (plan_.rays.residual > 0) w.distribution.build(w.integral);
     }
 
     /// The integral of `first`, its diffuse part multiplied by `scale`. Where there are layers over it, that
@@ -250,9 +263,12 @@ class BlockCache final : public Integrator {
     }
 
     /// Adds a sample with all its light; what is to be filtered goes into `residual` instead.
-    void finish_sample(const LitSample& sample, Tile& sums, PixelResidual& residual, RayCounts& rays) const {
+    void finish_sample(const LitSample& sample, Tile& sums, PixelResidual& residual, DoubtSum& doubt,
+                       RayCounts& rays) const {
         const GBufferPixel& pixel = *sample.pixel;
         SplitRadiance radiance{pixel.emission, {}, {}};
+        Spectrum throughput;
+        SampledRadiance found;
         if (pixel.point) {
             SplitRadiance reflected = sample.reflected;
             if (!pixel.reflects_alone) reflected = monte_carlo_.reflected(*pixel.point, pixel.stream, rays);
@@ -261,25 +277,32 @@ class BlockCache final : public Integrator {
                             pixel.stream.bits(Dim::opacity, 2 * pixel.point->path.depth + 1), rays);
             reflected.indirect +=
                 caustic_light(transport_, pixel.point->vertex, pixel.point->path.depth, max_depth_);
-            const Spectrum throughput = pixel.point->path.throughput;
-            if (!is_finite(sample.sampled.residual.direct + sample.sampled.residual.indirect
-                           + sample.sampled.bright)) {
-                ++rays.non_finite;  // and must not spread in the filter
-            } else if (plan_.filters) {
-                residual.bright += throughput * sample.sampled.bright;
-                residual.residual.direct += throughput * sample.sampled.residual.direct;
-                residual.residual.indirect += throughput * sample.sampled.residual.indirect;
-                residual.albedo += throughput * sample.albedo;
-            } else {
-                reflected.direct += sample.sampled.residual.direct + sample.sampled.bright;
-                reflected.indirect += sample.sampled.residual.indirect;
-            }
+            throughput = pixel.point->path.throughput;
+            found = finite_or_nothing(sample.sampled, rays);
             radiance.direct = throughput * reflected.direct;
             radiance.indirect = throughput * reflected.indirect;
+        }
+        if (estimates_noise())
+            doubt.add(found, throughput, radiance.total(), sample.albedo, sample.deviation);
+        if (plan_.filters) {
+            residual.bright += throughput * found.bright;
+            residual.direct += throughput * found.residual.direct;
+            residual.indirect += throughput * found.residual.indirect;
+            residual.albedo += throughput * sample.albedo;
+        } else {
+            radiance.direct += throughput * (found.residual.direct + found.bright);
+            radiance.indirect += throughput * found.residual.indirect;
         }
         CacheFigures figures;
         figures.records = sample.maps;
         sums.add(sums.rect.x0, sums.rect.y0, pixel.stream.index, radiance, pixel.surface, figures);
+    }
+
+    /// What is not finite must not spread in the filter.
+    static SampledRadiance finite_or_nothing(const SampledRadiance& found, RayCounts& rays) {
+        if (is_finite(found.residual.direct + found.residual.indirect + found.bright)) return found;
+        ++rays.non_finite;
+        return {};
     }
 
     FilterGuide guide_of(const CellRow& row, int x, int y) const {
@@ -290,35 +313,60 @@ class BlockCache final : public Integrator {
         return {};
     }
 
-    /// Adds what rays have found, filtered: divided by what the surface reflects, smoothed, and multiplied
-    /// again.
-    void filter(const Preparation& p) {
-        const auto direct = [](const PixelResidual& r) { return r.residual.direct; };
-        const auto indirect = [](const PixelResidual& r) { return r.residual.indirect; };
-        const auto bright = [](const PixelResidual& r) { return r.bright; };
-        add_filtered(direct, filter_levels, &SplitRadiance::direct, p.threads);
-        if (source_.reflects()) add_filtered(indirect, filter_levels, &SplitRadiance::indirect, p.threads);
+    /// Adds what rays have found, filtered, and what pixels are expected to be wrong by.
+    void add_found(const Preparation& p) {
+        if (!estimates_noise()) return;
+        const FilterImage guides{region_.width(), region_.height(), guides_, {}};
+        add_kind(guides, &PixelDoubt::residual,
+                 {{&PixelResidual::direct, &SplitRadiance::direct},
+                  {&PixelResidual::indirect, &SplitRadiance::indirect}},
+                 p.threads);
         if (!split_.empty())
-            add_filtered(bright, plan_.filters_bright ? bright_filter_levels : 0, &SplitRadiance::direct,
-                         p.threads);
+            add_kind(guides, &PixelDoubt::bright, {{&PixelResidual::bright, &SplitRadiance::direct}},
+                     p.threads);
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            pixels_[i].error.variance += doubts_[i].samples_variance;
+            pixels_[i].error.deviation += deviation_share() * doubts_[i].deviation;
+        }
     }
 
-    template <typename Part>
-    void add_filtered(const Part& part, int levels, Spectrum SplitRadiance::*light, int threads) {
-        FilterImage image{region_.width(), region_.height(), guides_, {}};
-        image.values.reserve(residuals_.size());
-        for (const PixelResidual& r : residuals_) image.values.push_back(divided(part(r), r.albedo));
-        filter_along_surfaces(image, levels, threads);
+    [[nodiscard]] float deviation_share() const {
+        if (plan_.rays.residual == 0) return deviation_alone;
+        return plan_.exact ? 0 : deviation_left;
+    }
+
+    struct Part {
+        Spectrum PixelResidual::*found;
+        Spectrum SplitRadiance::*light;
+    };
+
+    /// Parts of one kind: divided by what the surface reflects, smoothed, and multiplied again.
+    void add_kind(const FilterImage& guides, NoiseEstimate PixelDoubt::*kind, const std::vector<Part>& parts,
+                  int threads) {
+        std::vector<float> variances = noise_variances(guides, doubts_, kind, threads);
+        if (plan_.filters) {
+            FilterParts values(parts.size());
+            for (std::size_t k = 0; k < parts.size(); ++k)
+                for (const PixelResidual& r : residuals_)
+                    values[k].push_back(divided(r.*parts[k].found, r.albedo));
+            variances = smooth_noise(guides, values, variances, filter_levels, threads);
+            for (std::size_t k = 0; k < parts.size(); ++k) add_part(parts[k], values[k]);
+        }
+        for (std::size_t i = 0; i < pixels_.size(); ++i)
+            pixels_[i].error.variance += variances[i] * sqr(doubts_[i].albedo);
+    }
+
+    void add_part(const Part& part, const std::vector<Spectrum>& values) {
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const Spectrum sum = image.values[i] * residuals_[i].albedo;
+            const Spectrum sum = values[i] * residuals_[i].albedo;
             pixels_[i].radiance += sum;
-            pixels_[i].split.*light += sum;
+            pixels_[i].split.*part.light += sum;
         }
     }
 
     const Transport& transport_;
     const View& view_;
-    bool surface_layers_;
+    bool surface_layers_, predicts_;
     CachePlan plan_;
     std::uint32_t max_depth_;
     IncidentRadiance source_, map_source_;  // the truth, or what stands for it; what maps hold
@@ -332,6 +380,7 @@ class BlockCache final : public Integrator {
     std::vector<PixelSums> pixels_;
     std::vector<PixelResidual> residuals_;
     std::vector<FilterGuide> guides_;
+    std::vector<PixelDoubt> doubts_;
 };
 
 }  // namespace

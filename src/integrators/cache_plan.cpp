@@ -3,13 +3,6 @@
 #include "integrators/cache_plan.hpp"
 
 namespace relumine {
-namespace {
-
-/// With the shadow rays that a smaller error asks for, their noise is less than the filter's blur.
-constexpr float least_blurred_error = 0.01f;
-
-}  // namespace
-
 CachePlan cache_plan(const RenderSettings& s) {
     constexpr float usual_error = 0.02f, usual_tolerance = 0.2f, usual_residual = 8, usual_light = 16,
                     usual_rays_per_pixel = 12, usual_most_rays = 800;
@@ -26,7 +19,6 @@ CachePlan cache_plan(const RenderSettings& s) {
     plan.reprojected = usual_reprojected;
     plan.exact = s.unbiased;
     plan.filters = s.filter_residual && !s.unbiased && plan.rays.residual + plan.rays.light > 0;
-    plan.filters_bright = plan.filters && s.error >= least_blurred_error;
     if (s.unbiased && plan.rays.residual == 0) plan.rays.residual = 1;
     return plan;
 }
@@ -38,7 +30,7 @@ CachePlan block_gather_plan(const RenderSettings& s) {
     plan.blocks.most_rays = BlockSettings{}.most_rays;
     plan.rays.residual = 0;
     plan.reprojected = 0;
-    plan.exact = plan.filters = plan.filters_bright = false;
+    plan.exact = plan.filters = false;
     return plan;
 }
 

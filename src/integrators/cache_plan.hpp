@@ -13,7 +13,6 @@ struct CachePlan {
     RayBudget rays;
     std::size_t reprojected = 0;  // records around that a map is filled with, beside its own
     bool exact = false, filters = false;
-    bool filters_bright = false;  // what light samples find, too
 };
 
 /// At an error of 2 %: blocks with a parallax error of a fifth, for each pixel 8 residual rays and 16 shadow

@@ -13,6 +13,7 @@ struct LitSample {
     SplitRadiance reflected;  // of the maps' radiance
     SampledRadiance sampled;  // what residual and shadow rays add
     Spectrum albedo;          // directional
+    float deviation = 0;      // that the maps' light may be off by, luminance
     float maps = 0;           // that were blended
     bool done = false;        // has its integral
 };

@@ -41,6 +41,8 @@ RayRange ray_range(float rays, const SampleStream& sample, std::uint64_t purpose
     return {before(sample.index), before(sample.index + 1), before(std::max(sample.count, 1u)) + 1};
 }
 
+bool in_second_half(const SampleStream& stream) { return 2 * stream.index + 1 >= stream.count; }
+
 BsdfValue value_towards(const Vertex& vertex, WorldDir direction) {
     const LocalDir w_in = vertex.point.frame.to_local(direction);
     if (!(cos_theta(w_in) > 0)) return {};
@@ -64,20 +66,23 @@ void ResidualEstimator::see_cones(const IntegratedPoint& point) {
 }
 
 void ResidualEstimator::add(const IntegratedPoint& point, SampledRadiance& sum) {
-    const auto each = [&](float rays, std::uint64_t purpose, const auto& use) {
+    const auto each = [&](float rays, std::uint64_t purpose, RayNoise& noise, const auto& use) {
         const RayRange range = ray_range(rays, point.stream, purpose);
+        noise.rays += static_cast<float>(range.last - range.first);
         for (std::uint32_t i = range.first; i < range.last; ++i)
             use(SampleStream{hash(point.stream.key, purpose), i, range.all, point.stream.set});
     };
     see_cones(point);
     if (settings_.budget.residual > 0)
-        each(settings_.budget.residual, residual_purpose,
+        each(settings_.budget.residual, residual_purpose, sum.residual_noise,
              [&](const SampleStream& stream) { add_residual(point, stream, sum); });
     if (light_budget_ > 0)
-        each(light_budget_, light_purpose,
+        each(light_budget_, light_purpose, sum.light_noise,
              [&](const SampleStream& stream) { add_light(point, stream, sum); });
     if (cone_budget_ > 0)
-        each(cone_budget_, cone_purpose, [&](const SampleStream& stream) { add_cone(point, stream, sum); });
+        each(cone_budget_, cone_purpose, sum.cone_noise,
+             [&](const SampleStream& stream) { add_cone(point, stream, sum); });
+    sum.hit_noise.rays = sum.residual_noise.rays;
 }
 
 void ResidualEstimator::finish() {
@@ -121,6 +126,7 @@ void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleS
     const std::size_t lane = residual_count_++;
     residual_[lane] = {
         &sum,
+        in_second_half(stream),
         drawn->texel,
         bsdf.value,
         {h * held.direct, h * held.indirect},
@@ -165,18 +171,24 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
     const bool true_dim = hit || settings_.exact || ray.t_max < 0;
     const Spectrum dim =
         true_dim ? found.direct * (1 - bright.share) : settings_.environment.texels[drawn.texel] * colour;
-    SampledRadiance& sum = *drawn.sum;
-    sum.residual.direct += (drawn.bsdf * dim - drawn.held.direct) / drawn.density;
+    MapRadiance residual;
+    residual.direct = (drawn.bsdf * dim - drawn.held.direct) / drawn.density;
     const bool brightly = hit && !is_black(found.indirect) && settings_.split.reflects_brightly(ray, hit);
     const Spectrum dim_indirect = brightly ? Spectrum{} : found.indirect;
-    sum.residual.indirect += (drawn.bsdf * dim_indirect - drawn.held.indirect) / drawn.density;
+    residual.indirect = (drawn.bsdf * dim_indirect - drawn.held.indirect) / drawn.density;
     if (brightly && drawn.bsdf_density > 0)
-        sum.residual.indirect += drawn.bsdf * found.indirect
-                                 * (mis_weight(drawn.bsdf_density, drawn.cone_density) / drawn.bsdf_density);
-    if (bright.share > 0 && drawn.bsdf_density > 0)
-        sum.bright += drawn.bsdf * found.direct
-                      * (bright.share * mis_weight(drawn.bsdf_density, drawn.light_budget * bright.pdf)
-                         / drawn.bsdf_density);
+        residual.indirect += drawn.bsdf * found.indirect
+                             * (mis_weight(drawn.bsdf_density, drawn.cone_density) / drawn.bsdf_density);
+    SampledRadiance& sum = *drawn.sum;
+    sum.residual.direct += residual.direct;
+    sum.residual.indirect += residual.indirect;
+    sum.residual_noise.count(drawn.second_half, luminance(residual.direct + residual.indirect));
+    if (!(bright.share > 0 && drawn.bsdf_density > 0)) return;
+    const Spectrum shining = drawn.bsdf * found.direct
+                             * (bright.share * mis_weight(drawn.bsdf_density, drawn.light_budget * bright.pdf)
+                                / drawn.bsdf_density);
+    sum.bright += shining;
+    sum.hit_noise.count(drawn.second_half, luminance(shining));
 }
 
 void ResidualEstimator::add_light(const IntegratedPoint& point, const SampleStream& stream,
@@ -191,7 +203,8 @@ void ResidualEstimator::add_light(const IntegratedPoint& point, const SampleStre
     if (is_black(radiance)) return;
     const float density = light_budget_ * light->pdf;
     const float bsdf_density = settings_.budget.residual * bsdf_share(point.distribution) * bsdf.pdf;
-    light_[light_count_] = {&sum, radiance * (mis_weight(density, bsdf_density) / density)};
+    light_[light_count_] = {&sum, in_second_half(stream),
+                            radiance * (mis_weight(density, bsdf_density) / density)};
     light_rays_[light_count_++] = shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1));
     if (light_count_ == packet_size) trace_light();
 }
@@ -202,8 +215,11 @@ void ResidualEstimator::trace_light() {
     std::array<Spectrum, packet_size> passed;
     counts_.add(RayPurpose::shadow, light_count_);
     settings_.source.transport.tracer.passed_light(light_rays_, passed);
-    for (std::size_t lane = 0; lane < light_count_; ++lane)
-        light_[lane].sum->bright += light_[lane].reflected * passed[lane];
+    for (std::size_t lane = 0; lane < light_count_; ++lane) {
+        const Spectrum found = light_[lane].reflected * passed[lane];
+        light_[lane].sum->bright += found;
+        light_[lane].sum->light_noise.count(light_[lane].second_half, luminance(found));
+    }
     light_count_ = 0;
 }
 
@@ -218,7 +234,8 @@ void ResidualEstimator::add_cone(const IntegratedPoint& point, const SampleStrea
     cone_depth_ = depth;
     const float density = cone_budget_ * drawn.pdf;
     const float bsdf_density = settings_.budget.residual * bsdf_share(point.distribution) * bsdf.pdf;
-    cone_[cone_count_] = {&sum, bsdf.value * (mis_weight(density, bsdf_density) / density)};
+    cone_[cone_count_] = {&sum, in_second_half(stream),
+                          bsdf.value * (mis_weight(density, bsdf_density) / density)};
     cone_streams_[cone_count_] = stream;
     cone_rays_[cone_count_++] = {ray_origin(vertex.point, drawn.direction), drawn.direction, infinity,
                                  stream.bits(Dim::opacity, 2 * depth + 2)};
@@ -236,9 +253,12 @@ void ResidualEstimator::trace_cones() {
             cone_rays_[lane].t_max = -1;
     const RadiancePacket found =
         incident_radiance(settings_.source, cone_rays_, hits, cone_depth_ + 1, cone_streams_, counts_);
-    for (std::size_t lane = 0; lane < cone_count_; ++lane)
-        if (cone_rays_[lane].t_max >= 0)
-            cone_[lane].sum->residual.indirect += cone_[lane].weight * found[lane].indirect;
+    for (std::size_t lane = 0; lane < cone_count_; ++lane) {
+        if (cone_rays_[lane].t_max < 0) continue;
+        const Spectrum reflected = cone_[lane].weight * found[lane].indirect;
+        cone_[lane].sum->residual.indirect += reflected;
+        cone_[lane].sum->cone_noise.count(cone_[lane].second_half, luminance(reflected));
+    }
     cone_count_ = 0;
 }
 

@@ -4,6 +4,7 @@
 
 #include "blocks/bright_split.hpp"
 #include "blocks/residual_distribution.hpp"
+#include "integrators/ray_noise.hpp"
 #include "integrators/shading_point.hpp"
 #include "radiance/incident.hpp"
 
@@ -18,6 +19,8 @@ struct RayBudget {
 struct SampledRadiance {
     MapRadiance residual;  // true dim radiance less what the maps hold
     Spectrum bright;
+    RayNoise residual_noise, cone_noise;  // of `residual`, by kind of ray
+    RayNoise light_noise, hit_noise;      // of `bright`: of light samples, of residual rays
 };
 
 /// What residual rays are drawn and judged with.
@@ -55,6 +58,7 @@ class ResidualEstimator {
   private:
     struct ResidualRay {
         SampledRadiance* sum = nullptr;
+        bool second_half = false;  // of its sequence
         std::uint32_t texel = 0;
         Spectrum bsdf;           // f·|cos θ|; black where the surface is in the way
         MapRadiance held;        // the integrand in the maps
@@ -65,10 +69,12 @@ class ResidualEstimator {
     };
     struct LightRay {
         SampledRadiance* sum = nullptr;
+        bool second_half = false;
         Spectrum reflected;  // where nothing is in the way
     };
     struct ConeRay {
         SampledRadiance* sum = nullptr;
+        bool second_half = false;
         Spectrum weight;  // of the radiance that bright surfaces reflect
     };
     struct Drawn {
