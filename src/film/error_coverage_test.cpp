@@ -2,6 +2,7 @@
 // Predicted errors against values worked out by hand.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 

@@ -11,6 +11,7 @@
 #include "integrators/cell_rows.hpp"
 #include "integrators/error_prediction.hpp"
 #include "integrators/gather_estimate.hpp"
+#include "integrators/light_pilot.hpp"
 #include "integrators/light_source.hpp"
 #include "integrators/lit_sample.hpp"
 #include "integrators/path_tracer.hpp"
@@ -23,9 +24,6 @@ namespace {
 
 constexpr std::uint32_t samples_per_pass = 16;  // that share maps
 constexpr int filter_levels = 3;
-
-/// What maps are wrong by after filtered residual rays, against MapIntegral::deviation(); without any [sim].
-constexpr float deviation_left = 0.05f, deviation_alone = 0.2f;
 
 /// Radiance over which light is bright, and below which relative errors do not matter, against the
 /// environment's mean.
@@ -47,7 +45,22 @@ struct Workspace {
     MapIntegral matte;  // of its diffuse part, if has_matte
     bool has_matte = false;
     ResidualDistribution distribution;
-    std::vector<LitSample> samples;  // of the pixel
+};
+
+/// The samples of a cell on their way.
+struct LitCell {
+    PixelRect rect;
+    std::size_t per_pixel;
+    std::vector<LitSample> samples;  // pixel by pixel, row-major
+    std::vector<PilotLight> pilots;  // by pixel
+
+    [[nodiscard]] std::span<LitSample> at(int x, int y) {
+        const int pixel = (y - rect.y0) * rect.width() + x - rect.x0;
+        return std::span(samples).subspan(static_cast<std::size_t>(pixel) * per_pixel, per_pixel);
+    }
+    [[nodiscard]] ExpectedLight expected(int x, int y) const {
+        return expected_light(pilots, rect.width(), x - rect.x0, y - rect.y0);
+    }
 };
 
 Spectrum divided(Spectrum a, Spectrum b) {
@@ -150,15 +163,16 @@ class BlockCache final : public Integrator {
             if (cell.x0 >= cell.x1 || p.stop()) return;
             const std::vector<const BlockMap*> candidates = rows.maps_around(i);
             const MapIntegral integral(grid_, points_, environment_, plan_.exact);
-            Workspace workspace{integral, integral, false, ResidualDistribution(grid_), {}};
+            Workspace workspace{integral, integral, false, ResidualDistribution(grid_)};
             RayCounts rays;
             CacheCounts counts;
             WorkDone dropped;
+            LitCell lit = begin_cell(here, cell, rays, counts);
             for (int y = cell.y0; y < cell.y1; ++y)
                 for (int x = cell.x0; x < cell.x1; ++x) {
                     Tile sums = make_tile({x, y, x + 1, y + 1}, 0, 0);
                     sums.probe = p.probe;
-                    light_pixel(here, candidates, workspace, sums, rays, counts);
+                    light_pixel(here, candidates, lit, workspace, sums, rays, counts);
                     if (contains(view_.window, x, y)) dropped.add(sums.non_finite, sums.first_non_finite);
                 }
             const std::lock_guard lock(mutex);
@@ -168,21 +182,52 @@ class BlockCache final : public Integrator {
         });
     }
 
+    /// The light of lights without size on all samples of a cell, and the first samples of the others.
+    LitCell begin_cell(const CellRow& row, const PixelRect& rect, RayCounts& rays,
+                       CacheCounts& counts) const {
+        const StepTimer timer(counts, CacheStep::product);
+        LitCell cell{rect, row.samples.size(), {}, std::vector<PilotLight>(count(rect))};
+        cell.samples.resize(count(rect) * cell.per_pixel);
+        const ResidualSettings settings = residual_settings();
+        ResidualEstimator estimator(settings, rays);
+        const float pilot =
+            plan_.demand.light_adapts ? plan_.demand.pilot / plan_.pixel_samples : plan_.rays.light;
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x)
+                for (std::size_t s = 0; s < cell.per_pixel; ++s) {
+                    LitSample& sample = cell.at(x, y)[s];
+                    sample.pixel = &row.samples[s]->at(x, y);
+                    if (!sample.pixel->point) continue;
+                    const ShadingPoint& point = *sample.pixel->point;
+                    sample.delta =
+                        delta_light(transport_, point.vertex,
+                                    sample.pixel->stream.bits(Dim::opacity, 2 * point.path.depth + 1), rays);
+                    if (!sample.pixel->reflects_alone) continue;
+                    sample.bsdf = *receiver_bsdf(point.vertex, map_frame);
+                    estimator.add_light(point, sample.pixel->stream, pilot, LightSeries::first,
+                                        sample.sampled.light);
+                }
+        estimator.finish();
+        for (std::size_t i = 0; i < cell.samples.size(); ++i)
+            if (const LitSample& sample = cell.samples[i]; sample.pixel->reflects_alone)
+                cell.pilots[i / cell.per_pixel].add(sample.sampled.light,
+                                                    luminance(sample.pixel->point->path.throughput));
+        return cell;
+    }
+
+    [[nodiscard]] ResidualSettings residual_settings() const {
+        return {source_, split_, environment_, plan_.rays, plan_.exact};
+    }
+
     /// `sums`: of the pixel, empty.
-    void light_pixel(const CellRow& row, std::span<const BlockMap* const> candidates, Workspace& w,
-                     Tile& sums, RayCounts& rays, CacheCounts& counts) {
+    void light_pixel(const CellRow& row, std::span<const BlockMap* const> candidates, LitCell& cell,
+                     Workspace& w, Tile& sums, RayCounts& rays, CacheCounts& counts) {
         const int x = sums.rect.x0, y = sums.rect.y0;
-        w.samples.clear();
-        for (const auto& samples : row.samples) {
-            LitSample& sample = w.samples.emplace_back();
-            sample.pixel = &samples->at(x, y);
-            if (sample.pixel->reflects_alone)
-                sample.bsdf = *receiver_bsdf(sample.pixel->point->vertex, map_frame);
-        }
-        light_from_maps(candidates, w, rays, counts);
+        const std::span<LitSample> samples = cell.at(x, y);
+        light_from_maps(candidates, samples, cell.expected(x, y), w, rays, counts);
         PixelResidual residual;
         DoubtSum doubt;
-        for (const LitSample& sample : w.samples) finish_sample(sample, sums, residual, doubt, rays);
+        for (const LitSample& sample : samples) finish_sample(sample, sums, residual, doubt, rays);
         pixels_[index_of(x, y)] = sums.pixels[0];
         if (plan_.filters) residuals_[index_of(x, y)] = residual;
         if (!estimates_noise()) return;
@@ -192,24 +237,28 @@ class BlockCache final : public Integrator {
 
     /// Map integrals and residual rays of a pixel's samples. Samples that see the same surface alike share an
     /// integral.
-    void light_from_maps(std::span<const BlockMap* const> candidates, Workspace& w, RayCounts& rays,
+    void light_from_maps(std::span<const BlockMap* const> candidates, std::span<LitSample> samples,
+                         const ExpectedLight& bright, Workspace& w, RayCounts& rays,
                          CacheCounts& counts) const {
-        const ResidualSettings settings{source_, split_, environment_, plan_.rays, plan_.exact};
+        const ResidualSettings settings = residual_settings();
         ResidualEstimator estimator(settings, rays);
-        for (std::size_t i = 0; i < w.samples.size(); ++i) {
-            const LitSample& first = w.samples[i];
+        std::vector<FoundLight> more(samples.size());
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const LitSample& first = samples[i];
             if (!first.pixel->reflects_alone || first.done) continue;
             const Blend blend = blend_maps(first.pixel->cache, candidates);
             if (blend.empty()) {
-                w.samples[i].reflected =
-                    monte_carlo_.reflected(*first.pixel->point, first.pixel->stream, rays);
+                samples[i].reflected = monte_carlo_.reflected(*first.pixel->point, first.pixel->stream, rays);
+                samples[i].sampled = {};
                 ++counts.gathered;
                 continue;
             }
             integrate(first, blend, w, counts);
+            const RayBudget budget =
+                budget_of(first, bright, w, pass_share(samples.size(), plan_.pixel_samples));
             const StepTimer timer(counts, CacheStep::product);
-            for (std::size_t j = i; j < w.samples.size(); ++j) {
-                LitSample& sample = w.samples[j];
+            for (std::size_t j = i; j < samples.size(); ++j) {
+                LitSample& sample = samples[j];
                 if (!sample.pixel->reflects_alone || sample.done
                     || (j != i && !shares_integral(first, sample, plan_.exact)))
                     continue;
@@ -220,11 +269,41 @@ class BlockCache final : public Integrator {
                 if (estimates_noise()) sample.deviation = luminance(scale) * w.integral.deviation();
                 ++counts.points;
                 estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution,
-                               has_layers(first.bsdf) ? Spectrum{1} : scale},
+                               has_layers(first.bsdf) ? Spectrum{1} : scale, budget.residual},
                               sample.sampled);
+                estimator.add_light(*sample.pixel->point, sample.pixel->stream, budget.light,
+                                    LightSeries::second, more[j]);
             }
             estimator.finish();
         }
+        for (std::size_t i = 0; i < samples.size(); ++i) samples[i].sampled.light.join(more[i]);
+    }
+
+    /// √ of the samples of this pass over all of the picture's: the whole errs less than a pass by as much.
+    [[nodiscard]] static float pass_share(std::size_t samples, float all) {
+        return std::sqrt(std::min(1.0f, static_cast<float>(samples) / all));
+    }
+
+    /// Rays for a sample with the integral in `w`: as many as its expected error asks for. Nothing that they
+    /// are to find may count.
+    [[nodiscard]] RayBudget budget_of(const LitSample& sample, const ExpectedLight& bright,
+                                      const Workspace& w, float pass_share) const {
+        const RayDemand& demand = plan_.demand;
+        const MapRadiance held = w.integral.reflected();
+        const float throughput = luminance(sample.pixel->point->path.throughput);
+        const float shines = luminance(sample.pixel->emission)
+                             + throughput * luminance(held.direct + held.indirect + sample.delta)
+                             + bright.mean;
+        if (!(shines > 0)) return {plan_.rays.residual, 0};
+        RayBudget budget{plan_.rays.residual, 0};
+        if (demand.residual_adapts && plan_.rays.residual > 0)
+            budget.residual =
+                demand.residual_rays(throughput * w.integral.deviation() / shines) / plan_.pixel_samples;
+        if (demand.light_adapts)
+            budget.light =
+                bright.known ? demand.more_light(bright.deviation * pass_share / shines) / plan_.pixel_samples
+                             : plan_.rays.light;
+        return budget;
     }
 
     void integrate(const LitSample& sample, const Blend& blend, Workspace& w, CacheCounts& counts) const {
@@ -272,9 +351,7 @@ class BlockCache final : public Integrator {
         if (pixel.point) {
             SplitRadiance reflected = sample.reflected;
             if (!pixel.reflects_alone) reflected = monte_carlo_.reflected(*pixel.point, pixel.stream, rays);
-            reflected.direct +=
-                delta_light(transport_, pixel.point->vertex,
-                            pixel.stream.bits(Dim::opacity, 2 * pixel.point->path.depth + 1), rays);
+            reflected.direct += sample.delta;
             reflected.indirect +=
                 caustic_light(transport_, pixel.point->vertex, pixel.point->path.depth, max_depth_);
             throughput = pixel.point->path.throughput;
@@ -285,12 +362,12 @@ class BlockCache final : public Integrator {
         if (estimates_noise())
             doubt.add(found, throughput, radiance.total(), sample.albedo, sample.deviation);
         if (plan_.filters) {
-            residual.bright += throughput * found.bright;
+            residual.bright += throughput * (found.bright + found.light.radiance);
             residual.direct += throughput * found.residual.direct;
             residual.indirect += throughput * found.residual.indirect;
             residual.albedo += throughput * sample.albedo;
         } else {
-            radiance.direct += throughput * (found.residual.direct + found.bright);
+            radiance.direct += throughput * (found.residual.direct + found.bright + found.light.radiance);
             radiance.indirect += throughput * found.residual.indirect;
         }
         CacheFigures figures;
@@ -300,7 +377,8 @@ class BlockCache final : public Integrator {
 
     /// What is not finite must not spread in the filter.
     static SampledRadiance finite_or_nothing(const SampledRadiance& found, RayCounts& rays) {
-        if (is_finite(found.residual.direct + found.residual.indirect + found.bright)) return found;
+        if (is_finite(found.residual.direct + found.residual.indirect + found.bright + found.light.radiance))
+            return found;
         ++rays.non_finite;
         return {};
     }
@@ -326,13 +404,8 @@ class BlockCache final : public Integrator {
                      p.threads);
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
             pixels_[i].error.variance += doubts_[i].samples_variance;
-            pixels_[i].error.deviation += deviation_share() * doubts_[i].deviation;
+            if (!plan_.exact) pixels_[i].error.deviation += deviation_left(doubts_[i]);
         }
-    }
-
-    [[nodiscard]] float deviation_share() const {
-        if (plan_.rays.residual == 0) return deviation_alone;
-        return plan_.exact ? 0 : deviation_left;
     }
 
     struct Part {

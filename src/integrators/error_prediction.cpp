@@ -24,7 +24,7 @@ void DoubtSum::add(const SampledRadiance& found, Spectrum throughput, Spectrum l
     const float factor = luminance(throughput), l = luminance(light);
     residual_.add(found.residual_noise, factor);
     cone_.add(found.cone_noise, factor);
-    light_.add(found.light_noise, factor);
+    light_.add(found.light.noise, factor);
     hit_.add(found.hit_noise, factor);
     albedo_ += luminance(throughput * albedo);
     deviation_ += factor * deviation;
@@ -40,6 +40,13 @@ PixelDoubt DoubtSum::finish() const {
     doubt.residual.independent += sqr(unseen * deviation_) / std::max(residual_.rays, 1.0f);
     doubt.bright.add(noise_of(hit_));
     return doubt;
+}
+
+float deviation_left(const PixelDoubt& doubt) {
+    constexpr float alone = 0.2f;                     // [sim]
+    constexpr float of_one_ray = 0.1f, power = 0.3f;  // differences that the filter takes for noise
+    if (doubt.residual.rays < 1) return alone * doubt.deviation;
+    return std::min(alone, of_one_ray * std::pow(doubt.residual.rays, -power)) * doubt.deviation;
 }
 
 std::vector<float> noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,

@@ -22,7 +22,8 @@ struct PixelDoubt {
 /// Gathers that, sample by sample.
 class DoubtSum {
   public:
-    /// `light`: all of the sample's but what rays have found, times `throughput`; `deviation`: of its integral.
+    /// `light`: all of the sample's but what rays have found, times `throughput`; `deviation`: of its
+    /// integral.
     void add(const SampledRadiance& found, Spectrum throughput, Spectrum light, Spectrum albedo,
              float deviation);
     [[nodiscard]] PixelDoubt finish() const;
@@ -33,10 +34,14 @@ class DoubtSum {
     float samples_ = 0, sum_ = 0, squares_ = 0;
 };
 
+/// One sigma of what maps are still wrong by after the filter.
+[[nodiscard]] float deviation_left(const PixelDoubt& doubt);
+
 /// The variance of what rays have found in a pixel, over the square of its `albedo`, from the pixels around
-/// it on the same surface: few rays alone do not know how much they scatter. Row-major, as `guides` (a picture
-/// without values).
-[[nodiscard]] std::vector<float> noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,
+/// it on the same surface: few rays alone do not know how much they scatter. Row-major, as `guides` (a
+/// picture without values).
+[[nodiscard]] std::vector<float> noise_variances(const FilterImage& guides,
+                                                 std::span<const PixelDoubt> doubts,
                                                  NoiseEstimate PixelDoubt::*kind, int threads);
 
 }  // namespace relumine

@@ -8,9 +8,9 @@
 namespace relumine {
 namespace {
 
-constexpr float fewest_rays = 16;      // below, halves and single rays are too much alike to tell them apart
-constexpr float steepest = 3;          // a of smooth integrands
-constexpr int bisections = 8;          // of [1, steepest]: to .01
+constexpr float fewest_rays = 16;  // below, halves and single rays are too much alike to tell them apart
+constexpr float steepest = 3;      // a of smooth integrands
+constexpr int bisections = 8;      // of [1, steepest]: to .01
 
 }  // namespace
 

@@ -28,7 +28,8 @@ Variances variances(std::uint32_t count, const Integrand& integrand) {
         noise.rays = static_cast<float>(count);
         for (std::uint32_t i = 0; i < count; ++i) {
             const SampleStream stream{hash(trial, 7), i, count, PointSet::sobol};
-            const float found = integrand(stream.next2(Dim::direction, 0), stream) / static_cast<float>(count);
+            const float found =
+                integrand(stream.next2(Dim::direction, 0), stream) / static_cast<float>(count);
             noise.count(2 * i >= count, found);
         }
         const NoiseEstimate one = noise_of(noise);
@@ -63,7 +64,8 @@ TEST(RayNoise, SeesWhatGoodPointsGain) {
         EXPECT_LT(at_edges.true_one, 0.5 * independent) << count;  // else this would prove nothing
         EXPECT_LT(at_edges.predicted, 2 * at_edges.true_one) << count;
         EXPECT_GT(at_edges.predicted, 0.5 * at_edges.true_one) << count;
-        EXPECT_LT(of_smooth.predicted, 4 * of_smooth.true_one) << count;  // steeper than n^-3 is not told apart
+        EXPECT_LT(of_smooth.predicted, 4 * of_smooth.true_one)
+            << count;  // steeper than n^-3 is not told apart
         EXPECT_GT(of_smooth.predicted, 0.5 * of_smooth.true_one) << count;
     }
 }
