@@ -8,6 +8,7 @@
 #include "film/film.hpp"
 #include "integrators/registry.hpp"
 #include "memory_needs.hpp"
+#include "relumine/compare.hpp"
 #include "relumine/error.hpp"
 #include "render_keeper.hpp"
 #include "render_monitor.hpp"
@@ -93,6 +94,7 @@ Image render(const Scene& scene, const RenderSettings& settings, const RenderCon
         stats.checkpoint = {earlier.has_value(), earlier_samples, earlier ? earlier->work.seconds : 0,
                             keeper.written(), keeper.failed()};
     if (!whole && monitor.stop_reason() == StopReason::memory) refuse_memory(control, stats);
+    stats.predicted_error = predicted_relative_l1(image);
     describe(image, settings, stats);
     if (observer) observer->finished(stats);
     return image;

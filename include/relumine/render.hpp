@@ -126,6 +126,7 @@ struct RenderStats {
     bool stopped = false;                       // fewer samples than wanted
     std::string stopped_by;                     // "": nothing, "observer", "time limit"
     std::optional<CheckpointStats> checkpoint;  // where one was kept
+    std::optional<double> predicted_error;      // relative L1, where the layer "error" is asked for
 
     /// A JSON object with the fields above as keys; documented in docs/statistics.md.
     [[nodiscard]] std::string to_json() const;

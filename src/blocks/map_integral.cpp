@@ -2,6 +2,8 @@
 // Integrating over tiles.
 #include "blocks/map_integral.hpp"
 
+#include <numeric>
+
 namespace relumine {
 namespace {
 
@@ -165,6 +167,11 @@ void MapIntegral::estimate_deviations() {
         luminance(reflected_.direct + reflected_.indirect) / std::max(luminance(albedo_), 1e-9f);
     for (std::size_t k = 0; k < fine_tiles_.size(); ++k)
         deviation_[fine_tiles_[k]] = fine_deviation(k, level);
+}
+
+float MapIntegral::deviation() const {
+    return std::accumulate(deviation_.begin(), deviation_.end(), 0.0f) * grid_.texel_solid_angle
+           * tile_texels;
 }
 
 /// `level`: the mean radiance that the receiver sees, for what is unknown.

@@ -42,6 +42,8 @@ class MapIntegral {
     /// does, and what no map knows.
     void estimate_deviations();
     [[nodiscard]] std::span<const float> deviations() const { return deviation_; }
+    /// The integral over that: the most that `reflected()` may be wrong by if all tiles err the same way.
+    [[nodiscard]] float deviation() const;
     /// How the tile's deviation divides among its texels, in any unit.
     [[nodiscard]] std::array<float, tile_texels> texel_shares(std::uint32_t tile) const;
 
