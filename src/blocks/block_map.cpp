@@ -22,11 +22,10 @@ void RadiancePlanes::resize(const DirectionGrid& grid) {
     for (auto& plane : tile_means) plane.assign(grid.tiles, 0);
 }
 
-std::size_t BlockMap::bytes() const {
-    std::size_t floats = tile_luminance.size() + tile_variance.size();
-    for (const RadiancePlanes* planes : {&direct, &indirect})
-        floats += 3 * (planes->texels[0].size() + planes->tile_means[0].size());
-    return sizeof(BlockMap) + sizeof(float) * floats + sizeof(std::uint16_t) * (known.size() + open.size());
+std::size_t BlockMap::bytes(const DirectionGrid& grid, bool reflects) {
+    const std::size_t planes = reflects ? 6 : 3;
+    const std::size_t floats = planes * (grid.texels + grid.tiles) + 2 * grid.tiles;
+    return sizeof(BlockMap) + sizeof(float) * floats + sizeof(std::uint16_t) * 2 * grid.tiles;
 }
 
 void BlockMap::resize(const DirectionGrid& grid, bool reflects) {

@@ -75,12 +75,17 @@ class BlockCache final : public Integrator {
     [[nodiscard]] std::uint32_t longest_pass() const override { return samples_per_pass; }
 
     [[nodiscard]] bool works_in_preparation() const override { return true; }
-    [[nodiscard]] std::uint64_t known_bytes() const override {  // maps are not
+    [[nodiscard]] std::uint64_t known_bytes() const override {  // of maps no more than one for each cell
         const std::size_t filtered = plan_.filters ? sizeof(PixelResidual) + sizeof(FilterGuide) : 0;
         const auto row =
             static_cast<std::size_t>(std::min(view_.window.width() + 5 * cell_pixels, view_.width));
         return count(region()) * (sizeof(PixelSums) + filtered)
-               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel);
+               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel) + one_map_each();
+    }
+    void keep_within(std::uint64_t bytes) override {
+        plan_.blocks.map_weight = double{CellRows::with_maps} / double{CellRows::most};
+        plan_.blocks.most_bytes = static_cast<double>(bytes + one_map_each()) / static_cast<double>(cells())
+                                  / double{CellRows::most};
     }
 
     void prepare(Preparation& p) override {
@@ -124,6 +129,15 @@ class BlockCache final : public Integrator {
     [[nodiscard]] PixelRect region() const {
         return intersection(aligned(grown(view_.window, plan_.filters ? filter_reach(filter_levels) : 0)),
                             {0, 0, view_.width, view_.height});
+    }
+    /// Of a row.
+    [[nodiscard]] std::uint64_t cells() const {
+        const int width = std::min(region().width() + 2 * CellRows::reach * cell_pixels, view_.width);
+        return static_cast<std::uint64_t>((width + cell_pixels - 1) / cell_pixels + 1);
+    }
+    /// Bytes of as many maps as cells are held with maps.
+    [[nodiscard]] std::uint64_t one_map_each() const {
+        return CellRows::with_maps * cells() * BlockMap::bytes(grid_, map_source_.reflects());
     }
     [[nodiscard]] std::size_t index_of(int x, int y) const {
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width())
