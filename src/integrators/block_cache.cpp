@@ -27,6 +27,9 @@ constexpr int filter_levels = 3, bright_filter_levels = 1;
 /// environment's mean.
 constexpr float bright_factor = 128, least_level = 0.05f;
 
+/// Of a record, about.
+constexpr std::uint64_t usual_record_bytes = 55'000;
+
 /// Texels along each side of the world's square.
 constexpr int grid_side = 64;
 
@@ -75,16 +78,16 @@ class BlockCache final : public Integrator {
     [[nodiscard]] std::uint32_t longest_pass() const override { return samples_per_pass; }
 
     [[nodiscard]] bool works_in_preparation() const override { return true; }
-    [[nodiscard]] std::uint64_t known_bytes() const override {  // of maps no more than one for each cell
+    [[nodiscard]] std::uint64_t known_bytes() const override {  // of records and maps the least
         const std::size_t filtered = plan_.filters ? sizeof(PixelResidual) + sizeof(FilterGuide) : 0;
         const auto row =
             static_cast<std::size_t>(std::min(view_.window.width() + 5 * cell_pixels, view_.width));
         return count(region()) * (sizeof(PixelSums) + filtered)
-               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel) + one_map_each();
+               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel) + least_bytes();
     }
     void keep_within(std::uint64_t bytes) override {
         plan_.blocks.map_weight = double{CellRows::with_maps} / double{CellRows::most};
-        plan_.blocks.most_bytes = static_cast<double>(bytes + one_map_each()) / static_cast<double>(cells())
+        plan_.blocks.most_bytes = static_cast<double>(bytes + least_bytes()) / static_cast<double>(cells())
                                   / double{CellRows::most};
     }
 
@@ -135,9 +138,11 @@ class BlockCache final : public Integrator {
         const int width = std::min(region().width() + 2 * CellRows::reach * cell_pixels, view_.width);
         return static_cast<std::uint64_t>((width + cell_pixels - 1) / cell_pixels + 1);
     }
-    /// Bytes of as many maps as cells are held with maps.
-    [[nodiscard]] std::uint64_t one_map_each() const {
-        return CellRows::with_maps * cells() * BlockMap::bytes(grid_, map_source_.reflects());
+    /// Room for two records and maps in each cell: with less, many samples would have none.
+    [[nodiscard]] std::uint64_t least_bytes() const {
+        return 2 * cells()
+               * (CellRows::with_maps * BlockMap::bytes(grid_, map_source_.reflects())
+                  + CellRows::most * usual_record_bytes);
     }
     [[nodiscard]] std::size_t index_of(int x, int y) const {
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width())
