@@ -86,7 +86,7 @@ struct FieldStats {
     double unresolved_links = 0;  // share of the links that led nowhere
 };
 
-/// How a render is carried out. Nothing here changes a bit of the picture, but a limit may end it early.
+/// How a render is done. It changes no bit, but limits may end it early, or thin what does not fit.
 struct RenderControl {
     double time_limit = 0;            // seconds; then the picture so far is returned. 0: none
     std::uint64_t memory_limit = 0;   // bytes of the whole process; 0: none

@@ -31,14 +31,10 @@ void RadiancePlanes::resize(const DirectionGrid& grid) {
         for (auto& plane : axes) plane.assign(grid.tiles, 0);
 }
 
-std::size_t RadiancePlanes::bytes() const {
-    return sizeof(float) * 3 * (texels[0].size() + 3 * tile_moments[0][0].size());
-}
-
-std::size_t BlockMap::bytes() const {
-    return sizeof(BlockMap) + direct.bytes() + indirect.bytes()
-           + sizeof(float) * (tile_luminance.size() + tile_variance.size())
-           + sizeof(std::uint16_t) * (known.size() + open.size());
+std::size_t BlockMap::bytes(const DirectionGrid& grid, bool reflects) {
+    const std::size_t planes = reflects ? 6 : 3, moments = 3 * planes;
+    const std::size_t floats = planes * grid.texels + (moments + 2) * grid.tiles;
+    return sizeof(BlockMap) + sizeof(float) * floats + sizeof(std::uint16_t) * 2 * grid.tiles;
 }
 
 void BlockMap::resize(const DirectionGrid& grid, bool reflects) {

@@ -23,7 +23,6 @@ struct RadiancePlanes {
 
     [[nodiscard]] bool empty() const { return texels[0].empty(); }
     void resize(const DirectionGrid& grid);
-    [[nodiscard]] std::size_t bytes() const;
     [[nodiscard]] Spectrum at(std::size_t texel) const {
         return {texels[0][texel], texels[1][texel], texels[2][texel]};
     }
@@ -47,8 +46,8 @@ struct BlockMap {
     std::vector<std::uint16_t> open;   // the same: nothing but the environment is seen
     std::vector<float> tile_luminance, tile_variance;  // mean and variance of luminance within each tile
 
-    /// Memory that the map occupies.
-    [[nodiscard]] std::size_t bytes() const;
+    /// Memory that a finished map occupies.
+    [[nodiscard]] static std::size_t bytes(const DirectionGrid& grid, bool reflects);
 
     /// Knows nothing afterwards.
     void resize(const DirectionGrid& grid, bool reflects);

@@ -29,6 +29,9 @@ constexpr int filter_levels = 3;
 /// environment's mean.
 constexpr float bright_factor = 128, least_level = 0.05f;
 
+/// Of a record, about.
+constexpr std::uint64_t usual_record_bytes = 55'000;
+
 /// Texels along each side of the world's square.
 constexpr int grid_side = 64;
 
@@ -93,13 +96,18 @@ class BlockCache final : public Integrator {
     [[nodiscard]] std::uint32_t longest_pass() const override { return samples_per_pass; }
 
     [[nodiscard]] bool works_in_preparation() const override { return true; }
-    [[nodiscard]] std::uint64_t known_bytes() const override {  // maps are not
+    [[nodiscard]] std::uint64_t known_bytes() const override {  // of records and maps the least
         const std::size_t filtered = (plan_.filters ? sizeof(PixelResidual) : 0)
                                      + (estimates_noise() ? sizeof(FilterGuide) + sizeof(PixelDoubt) : 0);
         const auto row =
             static_cast<std::size_t>(std::min(view_.window.width() + 5 * cell_pixels, view_.width));
         return count(region()) * (sizeof(PixelSums) + filtered)
-               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel);
+               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel) + least_bytes();
+    }
+    void keep_within(std::uint64_t bytes) override {
+        plan_.blocks.map_weight = double{CellRows::with_maps} / double{CellRows::most};
+        plan_.blocks.most_bytes = static_cast<double>(bytes + least_bytes()) / static_cast<double>(cells())
+                                  / double{CellRows::most};
     }
 
     void prepare(Preparation& p) override {
@@ -148,6 +156,17 @@ class BlockCache final : public Integrator {
                           : predicts_   ? filter_reach(noise_levels)
                                         : 0;
         return intersection(aligned(grown(view_.window, reach)), {0, 0, view_.width, view_.height});
+    }
+    /// Of a row.
+    [[nodiscard]] std::uint64_t cells() const {
+        const int width = std::min(region().width() + 2 * CellRows::reach * cell_pixels, view_.width);
+        return static_cast<std::uint64_t>((width + cell_pixels - 1) / cell_pixels + 1);
+    }
+    /// Room for two records and maps in each cell: with less, many samples would have none.
+    [[nodiscard]] std::uint64_t least_bytes() const {
+        return 2 * cells()
+               * (CellRows::with_maps * BlockMap::bytes(grid_, map_source_.reflects())
+                  + CellRows::most * usual_record_bytes);
     }
     [[nodiscard]] std::size_t index_of(int x, int y) const {
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width())
