@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/executor.hpp"
+#include "base/memory.hpp"
 #include "base/message.hpp"
 #include "base/rgbe.hpp"
 #include "inspect_steps.hpp"
@@ -201,7 +202,7 @@ Inspection inspect(const Scene& scene, const RenderSettings& wanted, int x, int 
     const Framing framing = frame_of_pixel(scene.data(), settings, x, y);
     RenderSetup setup(scene.data(), settings, framing, [](const char*) {});
     RayCounts field_rays;
-    if (wants_field(settings)) setup.add_field(settings, {}, field_rays);
+    if (wants_field(settings)) setup.add_field(settings, {}, no_limit, field_rays);
     const InspectedPoint point = Inspector(setup, settings, x, y).run();
     Inspection inspection{draw_pictures(point), {}};
     inspection.report_json = report_json(point, inspection.pictures);

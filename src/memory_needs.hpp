@@ -19,10 +19,13 @@ using MemoryNeeds = std::vector<std::pair<std::string, std::uint64_t>>;
 /// Program, scene, acceleration structure (estimated), film, picture and, where one is kept, checkpoint.
 [[nodiscard]] MemoryNeeds needed_before_building(const Scene& scene, const RenderSettings& settings,
                                                  const Framing& framing, bool checkpoint);
-/// The same, and what the method will hold.
-[[nodiscard]] MemoryNeeds needed_with(const Integrator& integrator, const Scene& scene,
-                                      const RenderSettings& settings, const Framing& framing,
-                                      bool checkpoint);
+/// The same, and what the method and the radiance field, if any, will hold.
+[[nodiscard]] MemoryNeeds needed_with(const Integrator& integrator, const RadianceField* field,
+                                      const Scene& scene, const RenderSettings& settings,
+                                      const Framing& framing, bool checkpoint);
+
+/// What a limit leaves beside these needs, or no_limit. They have been checked.
+[[nodiscard]] std::uint64_t room_beside(const MemoryNeeds& needs, const RenderControl& control);
 
 /// Throws Error with the bytes needed where the limit is below.
 void check_memory(const RenderControl& control, const MemoryNeeds& needs);

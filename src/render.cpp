@@ -4,10 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 #include "base/executor.hpp"
+#include "base/memory.hpp"
 #include "film/film.hpp"
 #include "integrators/registry.hpp"
 #include "memory_needs.hpp"
+#include "relumine/compare.hpp"
 #include "relumine/error.hpp"
 #include "render_keeper.hpp"
 #include "render_monitor.hpp"
@@ -39,9 +45,29 @@ void refuse_memory(const RenderControl& control, const RenderStats& stats) {
                             control.memory_limit, resident_bytes(), stats.samples, kept)};
 }
 
+/// Whether what a memory limit leaves shows in the picture.
+bool thins(const RenderSettings& settings) {
+    constexpr std::array<std::string_view, 4> methods{"reproject", "reproject-mc", "cache", "block-gather"};
+    return wants_field(settings) || std::ranges::find(methods, settings.method) != methods.end();
+}
+
 /// Where a checkpoint is asked for: everything that the bits of the picture depend on.
 Identity identity_for(const RenderControl& control, const SceneData& scene, const RenderSettings& settings) {
-    return control.checkpoint.empty() ? Identity{} : picture_identity(scene, settings);
+    if (control.checkpoint.empty()) return {};
+    Identity identity = picture_identity(scene, settings);
+    const std::uint64_t limit = thins(settings) ? control.memory_limit : 0;
+    identity.emplace_back("memory limit", limit > 0 ? fmt::format("{} bytes", limit) : "none");
+    return identity;
+}
+
+/// Of the memory that is left, what the field may take, and what the method's records or maps may: the rest
+/// is for what is not counted. The same with a checkpoint and without, since it shows in the picture.
+constexpr double share_of_field = 0.5, share_of_method = 0.8;
+
+std::uint64_t share_of_room(double share, const MemoryNeeds& needs_with_checkpoint,
+                            const RenderControl& control) {
+    const std::uint64_t room = room_beside(needs_with_checkpoint, control);
+    return room == no_limit ? no_limit : static_cast<std::uint64_t>(share * static_cast<double>(room));
 }
 
 }  // namespace
@@ -67,13 +93,19 @@ Image render(const Scene& scene, const RenderSettings& settings, const RenderCon
     if (wants_field(settings)) {
         RayCounts rays;
         monitor.begin_stage("field");
+        const MemoryNeeds needs = needed_before_building(scene, settings, framing, true);
         setup.add_field(
-            settings, [&] { return monitor.stop(); }, rays);
+            settings, [&] { return monitor.stop(); }, share_of_room(share_of_field, needs, control), rays);
         monitor.add(rays);
     }
     const auto integrator =
         make_integrator(settings, setup.transport, setup.view, needs_surfaces(settings.aovs));
-    check_memory(control, needed_with(*integrator, scene, settings, framing, keeper.active()));
+    const auto needs = [&](bool checkpoint) {
+        return needed_with(*integrator, setup.field.get(), scene, settings, framing, checkpoint);
+    };
+    check_memory(control, needs(keeper.active()));
+    if (control.memory_limit > 0)
+        integrator->keep_within(share_of_room(share_of_method, needs(true), control));
 
     Film film(framing.width, framing.height, framing.window, settings.aovs);
     PassRunner runner(*integrator, framing.window, setup.view.samples_per_pixel, threads, film, monitor,
@@ -93,6 +125,7 @@ Image render(const Scene& scene, const RenderSettings& settings, const RenderCon
         stats.checkpoint = {earlier.has_value(), earlier_samples, earlier ? earlier->work.seconds : 0,
                             keeper.written(), keeper.failed()};
     if (!whole && monitor.stop_reason() == StopReason::memory) refuse_memory(control, stats);
+    stats.predicted_error = predicted_relative_l1(image);
     describe(image, settings, stats);
     if (observer) observer->finished(stats);
     return image;

@@ -104,10 +104,10 @@ RenderSetup::RenderSetup(const SceneData& scene, const RenderSettings& settings,
       view(make_view(settings, framing)) {}
 
 void RenderSetup::add_field(const RenderSettings& settings, const std::function<bool()>& stop,
-                            RayCounts& rays) {
+                            std::uint64_t most_bytes, RayCounts& rays) {
     caustics = make_caustics(settings, transport, stop, rays);
     transport.caustics = caustics.get();
-    field = make_field(settings, transport, view, stop, rays);
+    field = make_field(settings, transport, view, stop, most_bytes, rays);
     transport.field = field.get();
     if (wants_guide(settings)) transport.guide = field.get();
 }

@@ -27,9 +27,10 @@ struct RenderSetup {
     RenderSetup(const RenderSetup&) = delete;
     RenderSetup& operator=(const RenderSetup&) = delete;
 
-    /// Builds the radiance field that `wants_field(settings)` asks for, and the caustic map beside it. `stop`
-    /// may be empty.
-    void add_field(const RenderSettings& settings, const std::function<bool()>& stop, RayCounts& rays);
+    /// Builds the radiance field that `wants_field(settings)` asks for, of at most so many bytes, and the
+    /// caustic map beside it. `stop` may be empty.
+    void add_field(const RenderSettings& settings, const std::function<bool()>& stop,
+                   std::uint64_t most_bytes, RayCounts& rays);
 
     Tracer tracer;
     LightSampler lights;

@@ -36,6 +36,7 @@ std::string RenderStats::to_json() const {
         out["bytes"] = field->bytes;
         out["unresolved_links"] = field->unresolved_links;
     }
+    if (predicted_error) json["predicted_error"] = *predicted_error;
     json["peak_memory_bytes"] = peak_memory_bytes;
     json["threads"] = threads;
     json["stopped"] = stopped;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/executor.hpp"
+#include "base/memory.hpp"
 #include "base/message.hpp"
 #include "integrators/registry.hpp"
 #include "relumine/error.hpp"
@@ -60,7 +61,7 @@ ReplayedSample replay_sample(const Scene& scene, const RenderSettings& settings,
     const RenderSettings replayed = of_pixel(settings, x, y);
     RenderSetup setup(scene.data(), replayed, find_framing(scene.data(), replayed), [](const char*) {});
     RayCounts field_rays;
-    if (wants_field(replayed)) setup.add_field(replayed, {}, field_rays);
+    if (wants_field(replayed)) setup.add_field(replayed, {}, no_limit, field_rays);
     const auto integrator = make_integrator(replayed, setup.transport, setup.view, false);
     SampleProbe probe{{x, y, sample}, std::nullopt};
     for (const Pass& pass : passes_of(setup.view.samples_per_pixel, *integrator))

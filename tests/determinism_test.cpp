@@ -32,7 +32,7 @@ RenderSettings settings_for(const Case& c) {
     settings.cache_scope = c.cache_scope;
     settings.width = 70;
     settings.height = 50;
-    settings.aovs = {"albedo", "normal", "depth", "indirect", "variance"};
+    settings.aovs = {"albedo", "normal", "depth", "indirect", "variance", "error"};
     if (keeps_records(c)) {  // gap rays are many: only one case follows them further
         settings.max_depth = 3;
         settings.radiance = c == Case{"reproject", "cornell-glossy.glb"} ? "path" : "emission";

@@ -279,6 +279,28 @@ TEST(Limits, MethodsTellWhatTheyHold) {
     }
 }
 
+TEST(Limits, ThatMayShowBelongToTheCheckpoint) {  // what does not fit is thinned, but not for `path`
+    const test::ScratchFolder folder;
+    for (const char* method : {"path", "cache"}) {
+        RenderControl control;
+        control.checkpoint = folder / method;
+        const RenderSettings settings = small_settings(method);
+        const Scene scene = project_scene("cornell.glb");
+        StopAfter observer(3);
+        (void)render(scene, settings, control, &observer);
+        control.resume = true;
+        control.memory_limit = std::uint64_t{1} << 40;
+        std::string message;
+        try {
+            (void)render(scene, settings, control);
+        } catch (const Error& error) {
+            message = error.what();
+        }
+        EXPECT_EQ(message.find("memory limit") != std::string::npos, method == std::string("cache"))
+            << message;
+    }
+}
+
 TEST(Limits, WhatGrowsBeyondThemIsStopped) {
     const std::vector<char> held(std::size_t{64} << 20, 1);  // something else in the same process
     const std::string message = memory_message(small_settings("path"), std::uint64_t{40} << 20);

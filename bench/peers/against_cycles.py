@@ -177,16 +177,26 @@ def save_png(picture, path):
 
 
 def sphere_masks(args):
-    """Blocks whose centre lies well inside each sphere's outline."""
+    """Blocks whose centre lies well inside each sphere's outline and away from those of nearer spheres, which hide it."""
     from bpy_extras.object_utils import world_to_camera_view
     scene, camera = bpy.context.scene, bpy.context.scene.camera
     count = args.size // args.block
     y, x = (np.mgrid[0:count, 0:count] + 0.5) / count
+    outlines = {}
     for name in SPHERES:
-        center = bpy.data.objects[name].location
-        u, v, depth = world_to_camera_view(scene, camera, center)
-        radius = 0.45 * 0.6 / (depth * 2 * math.tan(camera.data.angle / 2)) * 2
-        yield name, (x - u) ** 2 + (y - (1 - v)) ** 2 < radius ** 2
+        u, v, depth = world_to_camera_view(scene, camera, bpy.data.objects[name].location)
+        outlines[name] = u, 1 - v, 0.6 / (depth * 2 * math.tan(camera.data.angle / 2)), depth
+
+    def within(name, share):
+        u, v, radius, _ = outlines[name]
+        return (x - u) ** 2 + (y - v) ** 2 < (share * radius) ** 2
+
+    for name, (_, _, _, depth) in outlines.items():
+        mask = within(name, 0.9)
+        for other, (_, _, _, nearer) in outlines.items():
+            if nearer < depth:
+                mask &= ~within(other, 1.2)
+        yield name, mask
 
 
 def compare(ours, theirs, args):

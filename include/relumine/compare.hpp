@@ -42,6 +42,20 @@ struct Comparison {
 [[nodiscard]] Comparison compare_images(const Image& image, const Image& reference,
                                         const CompareOptions& options = {});
 
+/// The relative L1 error that a picture's layer "error" expects if errors are normal: √(2/π) Σ σ L / Σ L over
+/// luminance L and what the layer says, σ. Empty where there is no such layer.
+[[nodiscard]] std::optional<double> predicted_relative_l1(const Image& image);
+
+/// How often the layer "error" was right, over the pixels that it says something of.
+struct ErrorCoverage {
+    std::size_t pixels = 0;
+    double one_sigma = 1, two_sigma = 1;  // share of them whose luminance is so near to the reference's
+};
+
+/// Empty where the image has no such layer. A reference that has one, too, adds its own error. Throws
+/// ImageError when the sizes differ or a picture itself is missing.
+[[nodiscard]] std::optional<ErrorCoverage> error_coverage(const Image& image, const Image& reference);
+
 /// What `compare_blocks` lets pass: |difference| ≤ sigmas × combined standard error + relative × reference.
 struct BlockTolerance {
     double sigmas = 4;

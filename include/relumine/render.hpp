@@ -88,7 +88,7 @@ struct FieldStats {
     double unresolved_links = 0;  // share of the links that led nowhere
 };
 
-/// How a render is carried out. Nothing here changes a bit of the picture, but a limit may end it early.
+/// How a render is done. It changes no bit, but limits may end it early, or thin what does not fit.
 struct RenderControl {
     double time_limit = 0;            // seconds; then the picture so far is returned. 0: none
     std::uint64_t memory_limit = 0;   // bytes of the whole process; 0: none
@@ -128,6 +128,7 @@ struct RenderStats {
     bool stopped = false;                       // fewer samples than wanted
     std::string stopped_by;                     // "": nothing, "observer", "time limit"
     std::optional<CheckpointStats> checkpoint;  // where one was kept
+    std::optional<double> predicted_error;      // relative L1, where the layer "error" is asked for
 
     /// A JSON object with the fields above as keys; documented in docs/statistics.md.
     [[nodiscard]] std::string to_json() const;

@@ -38,6 +38,13 @@ struct CacheFigures {
     float unknown = 0;  // share of the hemisphere in the last record's unknown mask, [0, 1]
 };
 
+/// What a method says of its own error; 0 where it says nothing. Of the sum over a pixel's samples,
+/// luminance.
+struct PredictedError {
+    float variance = 0;   // of what is drawn at random, independent from pass to pass
+    float deviation = 0;  // one sigma of what all passes have in common
+};
+
 /// Sums over the samples of one pixel.
 struct PixelSums {
     Spectrum radiance, radiance_squared;
@@ -45,6 +52,7 @@ struct PixelSums {
     Spectrum albedo;
     Vec3 normal;
     CacheFigures cache;
+    PredictedError error;
     FirstSurface first;  // of sample 0 alone: positions and ids have no mean
     std::uint32_t samples = 0;
 };

@@ -7,11 +7,19 @@
 namespace relumine {
 namespace {
 
-void average(const std::vector<float>& texels, const std::vector<float>& share, std::vector<float>& means) {
-    for (std::size_t tile = 0; tile < means.size(); ++tile) {
-        float sum = 0;
-        for (std::size_t i = 0; i < tile_texels; ++i) sum += texels[tile * tile_texels + i];
-        means[tile] = sum * share[tile];
+/// `share`: by tile, one over the number of known texels.
+void average_moments(const DirectionGrid& grid, const std::vector<float>& texels,
+                     const std::vector<float>& share, std::array<std::vector<float>, 3>& moments) {
+    for (std::size_t tile = 0; tile < grid.tiles; ++tile) {
+        float x = 0, y = 0, z = 0;
+        for (std::size_t i = tile * tile_texels; i < (tile + 1) * tile_texels; ++i) {
+            x += texels[i] * grid.x[i];
+            y += texels[i] * grid.y[i];
+            z += texels[i] * grid.z[i];
+        }
+        moments[0][tile] = x * share[tile];
+        moments[1][tile] = y * share[tile];
+        moments[2][tile] = z * share[tile];
     }
 }
 
@@ -19,14 +27,14 @@ void average(const std::vector<float>& texels, const std::vector<float>& share, 
 
 void RadiancePlanes::resize(const DirectionGrid& grid) {
     for (auto& plane : texels) plane.assign(grid.texels, 0);
-    for (auto& plane : tile_means) plane.assign(grid.tiles, 0);
+    for (auto& axes : tile_moments)
+        for (auto& plane : axes) plane.assign(grid.tiles, 0);
 }
 
-std::size_t BlockMap::bytes() const {
-    std::size_t floats = tile_luminance.size() + tile_variance.size();
-    for (const RadiancePlanes* planes : {&direct, &indirect})
-        floats += 3 * (planes->texels[0].size() + planes->tile_means[0].size());
-    return sizeof(BlockMap) + sizeof(float) * floats + sizeof(std::uint16_t) * (known.size() + open.size());
+std::size_t BlockMap::bytes(const DirectionGrid& grid, bool reflects) {
+    const std::size_t planes = reflects ? 6 : 3, moments = 3 * planes;
+    const std::size_t floats = planes * grid.texels + (moments + 2) * grid.tiles;
+    return sizeof(BlockMap) + sizeof(float) * floats + sizeof(std::uint16_t) * 2 * grid.tiles;
 }
 
 void BlockMap::resize(const DirectionGrid& grid, bool reflects) {
@@ -42,7 +50,7 @@ void BlockMap::finish(const DirectionGrid& grid) {
         share[tile] = known[tile] ? 1 / static_cast<float>(std::popcount(known[tile])) : 0;
     for (RadiancePlanes* planes : {&direct, &indirect})
         for (std::size_t c = 0; c < 3 && !planes->empty(); ++c)
-            average(planes->texels[c], share, planes->tile_means[c]);
+            average_moments(grid, planes->texels[c], share, planes->tile_moments[c]);
     tile_luminance.assign(grid.tiles, 0);
     tile_variance.assign(grid.tiles, 0);
     for (std::size_t tile = 0; tile < grid.tiles; ++tile) {

@@ -16,8 +16,10 @@ inline constexpr Frame map_frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /// Radiance by texel of the world's grid, one plane per channel; what is bright is not in it.
 struct RadiancePlanes {
-    std::array<std::vector<float>, 3> texels;      // W·sr⁻¹·m⁻²; 0 where unknown
-    std::array<std::vector<float>, 3> tile_means;  // over the known texels
+    std::array<std::vector<float>, 3> texels;  // W·sr⁻¹·m⁻²; 0 where unknown
+    /// By channel and axis: the mean over a tile's known texels of radiance times direction. What a matte
+    /// surface reflects is the product with its normal, however radiance and cosine vary within the tile.
+    std::array<std::array<std::vector<float>, 3>, 3> tile_moments;
 
     [[nodiscard]] bool empty() const { return texels[0].empty(); }
     void resize(const DirectionGrid& grid);
@@ -44,8 +46,8 @@ struct BlockMap {
     std::vector<std::uint16_t> open;   // the same: nothing but the environment is seen
     std::vector<float> tile_luminance, tile_variance;  // mean and variance of luminance within each tile
 
-    /// Memory that the map occupies.
-    [[nodiscard]] std::size_t bytes() const;
+    /// Memory that a finished map occupies.
+    [[nodiscard]] static std::size_t bytes(const DirectionGrid& grid, bool reflects);
 
     /// Knows nothing afterwards.
     void resize(const DirectionGrid& grid, bool reflects);

@@ -44,20 +44,30 @@ class Partition {
           settings_(settings),
           records_(records),
           rays_(rays),
+          map_bytes_(settings.map_weight
+                     * static_cast<double>(BlockMap::bytes(source.grid, source.radiance.reflects()))),
           fill_(source.grid, source.environment) {
         for (auto& plane : bsdf_) plane.resize(source.grid.tiles);
     }
 
-    /// Adds the records of the samples in the square block of `size` pixels with its corner at (x, y).
-    void divide(Points points, int x, int y, int size) {
+    /// Adds the records of the samples in the square block of `size` pixels with its corner at (x, y). Each
+    /// sample has so many bytes for them.
+    void divide(Points points, int x, int y, int size, double bytes_per_point) {
         while (!points.empty()) {
             const Points group = take_group(points, x, y, size);
+            const auto count = static_cast<double>(group.size());
+            const double bytes = bytes_per_point * count;
+            if (bytes < map_bytes_) continue;
             MapRecord record = traced(group, x, y, size);
+            const double record_bytes = static_cast<double>(record.bytes()),
+                         rest = bytes - record_bytes - map_bytes_;
+            if (rest < 0) continue;
             record.has_map = size <= settings_.smallest || group.size() == 1
+                             || rest < 4 * (record_bytes + map_bytes_)
                              || error_of(record, group) <= settings_.tolerance;
             const bool divided = !record.has_map;
             records_.push_back(std::move(record));
-            if (divided) divide_quarters(group, x, y, size / 2);
+            if (divided) divide_quarters(group, x, y, size / 2, (bytes - record_bytes) / count);
         }
     }
 
@@ -137,7 +147,7 @@ class Partition {
         return parallax_error(source_.grid, map_, distances_, weights_, std::sqrt(extent), settings_.level);
     }
 
-    void divide_quarters(const Points& group, int x, int y, int size) {
+    void divide_quarters(const Points& group, int x, int y, int size, double bytes_per_point) {
         for (int quarter = 0; quarter < 4; ++quarter) {
             const int x0 = x + quarter % 2 * size, y0 = y + quarter / 2 * size;
             Points inside;
@@ -145,7 +155,7 @@ class Partition {
                 return p->point->x >= x0 && p->point->x < x0 + size && p->point->y >= y0
                        && p->point->y < y0 + size;
             });
-            divide(std::move(inside), x0, y0, size);
+            divide(std::move(inside), x0, y0, size, bytes_per_point);
         }
     }
 
@@ -153,6 +163,7 @@ class Partition {
     const BlockSettings& settings_;
     std::vector<MapRecord>& records_;
     RayCounts& rays_;
+    double map_bytes_;  // weighed
     MapFill fill_;
     BlockMap map_;                            // from one record alone
     std::vector<float> weights_, distances_;  // of the group: by tile, by texel
@@ -167,13 +178,15 @@ std::vector<MapRecord> make_records(const MapSource& source, const PixelRect& ce
     std::vector<MapRecord> records;
     Partition partition(source, settings, records, rays);
     const int size = settings.largest;
+    const double bytes_per_point =
+        settings.most_bytes / static_cast<double>(std::max<std::size_t>(points.size(), 1));
     for (int y = cell.y0; y < cell.y1; y += size)
         for (int x = cell.x0; x < cell.x1; x += size) {
             Points inside;
             for (const BlockPoint& p : points)
                 if (p.point->x >= x && p.point->x < x + size && p.point->y >= y && p.point->y < y + size)
                     inside.push_back(&p);
-            partition.divide(std::move(inside), x, y, size);
+            partition.divide(std::move(inside), x, y, size, bytes_per_point);
         }
     return records;
 }

@@ -2,6 +2,8 @@
 // Which camera samples share a map.
 #pragma once
 
+#include <limits>
+
 #include "blocks/block_trace.hpp"
 #include "cache/placement.hpp"
 #include "cache/receiver_bsdf.hpp"
@@ -25,6 +27,10 @@ struct BlockSettings {
     float level = 0;            // radiance that errors are relative to where there is less
     float min_cos_normals = 0.9f;  // between the anchor's geometric normal and the other samples'
     int samples_per_pixel = 1;     // of those that share maps
+    /// Bytes that a cell's records and maps may take. Where that is little, blocks are not divided; where it
+    /// is less, groups have neither record nor map.
+    double most_bytes = std::numeric_limits<double>::infinity();
+    double map_weight = 1;  // what a map's bytes count for there, beside a record's
 };
 
 /// The records of a cell: its samples in groups of similar position and normal, in blocks as large as the

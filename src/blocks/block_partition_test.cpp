@@ -205,6 +205,28 @@ TEST(BlockPartition, DividedBlocksLeaveTheirRecords) {
     EXPECT_EQ(maps_of(stage, samples).size(), records.size() - divided);
 }
 
+TEST(BlockPartition, StaysWithinItsBytes) {
+    const FlushDenormals flush;
+    const MapStage stage({wall_beside_floor}, even_sky(Spectrum{1}), 32);
+    const Samples samples = floor_of(cell_pixels);
+    const auto map_bytes = static_cast<double>(BlockMap::bytes(stage.source().grid, false));
+    std::size_t before = 1000;
+    for (const double most : {1e9, 1e6, 3e5, 1e5, 0.0}) {
+        BlockSettings settings;
+        settings.smallest = 1;
+        settings.most_bytes = most;
+        RayCounts rays;
+        const auto records = make_records(stage.source(), cell, samples.blocks, settings, rays);
+        double bytes = 0;
+        for (const MapRecord& r : records)
+            bytes += static_cast<double>(r.bytes()) + (r.has_map ? map_bytes : 0);
+        EXPECT_LE(bytes, most);
+        EXPECT_LT(records.size(), before) << most;
+        EXPECT_EQ(records.empty(), most == 0) << most;
+        before = records.size();
+    }
+}
+
 TEST(BlockPartition, AnEmptyCellHasNoMaps) {
     const MapStage stage({}, even_sky(Spectrum{1}), 16);
     EXPECT_TRUE(maps_of(stage, {}).empty());

@@ -184,11 +184,11 @@ TEST(BlockMap, MeansAndVariancesAreOverTheKnownTexels) {
     const DirectionGrid grid(16);
     const BlockMap map = testing::random_map(grid, 5);
     for (std::size_t tile = 0; tile < grid.tiles; ++tile) {
-        Spectrum direct;
+        Vec3 moment;
         double sum = 0, squares = 0;
         const int known = std::popcount(map.known[tile]);
         for (std::size_t i = tile * tile_texels; i < (tile + 1) * tile_texels; ++i) {
-            direct += map.direct.at(i);
+            moment += grid.texel_center(i).v * map.direct.at(i).g;
             if (!(map.known[tile] >> i % tile_texels & 1)) continue;
             const double l = luminance(map.direct.at(i)) + luminance(map.indirect.at(i));
             sum += l;
@@ -197,7 +197,10 @@ TEST(BlockMap, MeansAndVariancesAreOverTheKnownTexels) {
         const double mean = known ? sum / known : 0, variance = known ? squares / known - mean * mean : 0;
         EXPECT_NEAR(map.tile_luminance[tile], mean, 1e-4);
         EXPECT_NEAR(map.tile_variance[tile], variance, 1e-3);
-        EXPECT_NEAR(map.direct.tile_means[1][tile], known ? direct.g / static_cast<float>(known) : 0, 1e-4);
+        const std::array<float, 3> axes{moment.x, moment.y, moment.z};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(map.direct.tile_moments[1][axis][tile],
+                        known ? axes[axis] / static_cast<float>(known) : 0, 1e-4);
     }
 }
 

@@ -2,6 +2,8 @@
 // Integrating over tiles.
 #include "blocks/map_integral.hpp"
 
+#include <numeric>
+
 namespace relumine {
 namespace {
 
@@ -16,13 +18,15 @@ MapIntegral::MapIntegral(const DirectionGrid& grid, const QuadraturePoints& poin
       points_(points),
       environment_(environment),
       exact_(exact),
+      lobe_share_(grid_.tiles),
       luminance_(grid_.tiles),
       variance_(grid_.tiles),
       known_(grid_.tiles),
       tiers_(grid_.tiles),
       fine_index_(grid_.tiles),
       deviation_(grid_.tiles) {
-    for (auto& plane : tile_bsdf_) plane.resize(grid_.tiles);
+    for (auto* planes : {&tile_bsdf_, &matte_})
+        for (auto& plane : *planes) plane.resize(grid_.tiles);
 }
 
 BsdfPlanes MapIntegral::tile_bsdf() {
@@ -47,8 +51,9 @@ void MapIntegral::run(const Blend& blend, const ReceiverBsdf& bsdf, Vec3 geometr
         query.axis_x = bsdf.shading_x;
         query.axis_y = bsdf.shading_y;
     }
-    choose_tiers(grid_, query, known_, tiers_);
     evaluate_tiles();
+    if (query.alpha > 0) find_lobe_shares();
+    choose_tiers(grid_, query, {lobe_share_, luminance_, variance_, known_}, tiers_);
     list_fine_tiles();
     evaluate_texels();
     sum();
@@ -60,6 +65,19 @@ void MapIntegral::evaluate_tiles() {
              {tile_bsdf_[0], tile_bsdf_[1], tile_bsdf_[2]});
     for (auto& plane : tile_bsdf_)
         for (std::size_t tile = 0; tile < grid_.tiles; ++tile) plane[tile] *= grid_.tile_length[tile];
+}
+
+/// At the tiles' centres.
+void MapIntegral::find_lobe_shares() {
+    ReceiverBsdf matte = receiver_;
+    matte.specular = false;
+    evaluate(matte, {grid_.tile_x, grid_.tile_y, grid_.tile_z}, {matte_[0], matte_[1], matte_[2]});
+    for (std::size_t tile = 0; tile < grid_.tiles; ++tile) {
+        const float all = luminance({tile_bsdf_[0][tile], tile_bsdf_[1][tile], tile_bsdf_[2][tile]})
+                          / grid_.tile_length[tile];
+        const float diffuse = luminance({matte_[0][tile], matte_[1][tile], matte_[2][tile]});
+        lobe_share_[tile] = all > 0 ? std::max(0.0f, 1 - diffuse / all) : 1;
+    }
 }
 
 void MapIntegral::list_fine_tiles() {
@@ -89,7 +107,7 @@ void MapIntegral::evaluate_texels() {
 }
 
 void MapIntegral::sum() {
-    const ReflectedSums by_tile = sum_tiles(blend_, tiers_, tile_bsdf());
+    const ReflectedSums by_tile = sum_tiles(grid_, receiver_.shading_z, blend_, tiers_, tile_bsdf());
     texel_sums_.resize(fine_tiles_.size());
     const ReflectedSums by_texel = sum_texels(blend_, fine_tiles_, texel_bsdf(), texel_sums_);
     const float texel = grid_.texel_solid_angle, tile = texel * tile_texels;
@@ -149,6 +167,11 @@ void MapIntegral::estimate_deviations() {
         luminance(reflected_.direct + reflected_.indirect) / std::max(luminance(albedo_), 1e-9f);
     for (std::size_t k = 0; k < fine_tiles_.size(); ++k)
         deviation_[fine_tiles_[k]] = fine_deviation(k, level);
+}
+
+float MapIntegral::deviation() const {
+    return std::accumulate(deviation_.begin(), deviation_.end(), 0.0f) * grid_.texel_solid_angle
+           * tile_texels;
 }
 
 /// `level`: the mean radiance that the receiver sees, for what is unknown.

@@ -42,6 +42,8 @@ class MapIntegral {
     /// does, and what no map knows.
     void estimate_deviations();
     [[nodiscard]] std::span<const float> deviations() const { return deviation_; }
+    /// The integral over that: the most that `reflected()` may be wrong by if all tiles err the same way.
+    [[nodiscard]] float deviation() const;
     /// How the tile's deviation divides among its texels, in any unit.
     [[nodiscard]] std::array<float, tile_texels> texel_shares(std::uint32_t tile) const;
 
@@ -49,6 +51,7 @@ class MapIntegral {
 
   private:
     void evaluate_tiles();
+    void find_lobe_shares();
     void list_fine_tiles();
     void evaluate_texels();
     void sum();
@@ -65,6 +68,8 @@ class MapIntegral {
     bool exact_;
     Blend blend_;                                  // of the last run
     std::array<std::vector<float>, 3> tile_bsdf_;  // 0 but in tiles of tier `one`
+    std::array<std::vector<float>, 3> matte_;      // at the tiles' centres, without the lobe
+    std::vector<float> lobe_share_;                // of f there, by tile
     std::vector<float> luminance_, variance_;      // of radiance, by tile
     std::vector<std::uint16_t> known_;             // by tile: texels that all maps know
     std::vector<TileTier> tiers_;

@@ -114,6 +114,56 @@ TEST_F(MapIntegrals, ReflectTheAlbedoInAWhiteFurnace) {
         }
 }
 
+/// Σ over texels of radiance times f·|cos θ| at 16 points of each.
+Spectrum texel_by_texel(const DirectionGrid& grid, const BlockMap& map, const ReceiverBsdf& bsdf,
+                        Vec3 normal) {
+    constexpr int side = 4, points = side * side;
+    std::array<std::vector<float>, 3> d, f;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        d[axis].resize(grid.texels * points);
+        f[axis].resize(grid.texels * points);
+    }
+    for (std::uint32_t texel = 0; texel < grid.texels; ++texel)
+        for (int i = 0; i < points; ++i) {
+            const Vec3 w = grid.direction_in(texel, {(static_cast<float>(i % side) + 0.5f) / side,
+                                                     (static_cast<float>(i / side) + 0.5f) / side})
+                               .v;
+            const std::size_t at = texel * points + static_cast<std::size_t>(i);
+            d[0][at] = w.x;
+            d[1][at] = w.y;
+            d[2][at] = w.z;
+        }
+    evaluate(bsdf, {d[0], d[1], d[2]}, {f[0], f[1], f[2]});
+    Spectrum sum;
+    for (std::size_t at = 0; at < f[0].size(); ++at)
+        if (dot(Vec3{d[0][at], d[1][at], d[2][at]}, normal) > 0)
+            sum += Spectrum{f[0][at], f[1][at], f[2][at]} * map.direct.at(at / points);
+    return sum * (grid.texel_solid_angle / points);
+}
+
+/// One point per tile is not enough where light falls off together with the cosine, or with a lobe.
+TEST_F(MapIntegrals, FollowLightThatVariesWithinTiles) {
+    for (const Bsdf& bsdf : {Bsdf{Lambert{{0.8f, 0.5f, 0.2f}}}, metal(0.6f), plastic()})
+        for (const Vec3 from : {Vec3{1, 0, 0.1f}, Vec3{0, -1, 0.3f}, Vec3{-0.6f, 0.5f, -0.2f}}) {
+            const BlockMap map = open_map(stage.grid(), [&](std::size_t texel) {
+                return Spectrum{std::exp(5 * dot(normalize(from), stage.grid().texel_center(texel).v))};
+            });
+            const Vertex vertex = vertex_of(bsdf, 0.7f);
+            MapIntegral integral(stage.grid(), points, stage.environment(), false);
+            // The sky is white: as if nothing of it were open.
+            BlockMap seen = map;
+            seen.open.assign(seen.open.size(), 0);
+            const ReceiverBsdf receiver = *receiver_bsdf(vertex, world);
+            integral.run(blend_of({seen}), receiver, vertex.point.geometric_normal);
+            const Spectrum expected =
+                texel_by_texel(stage.grid(), map, receiver, vertex.point.geometric_normal);
+            const Spectrum found = integral.reflected().direct;
+            EXPECT_NEAR(found.r, expected.r, 0.004f * expected.r);
+            EXPECT_NEAR(found.g, expected.g, 0.004f * expected.g);
+            EXPECT_NEAR(found.b, expected.b, 0.004f * expected.b);
+        }
+}
+
 TEST_F(MapIntegrals, HaveTheAlbedoOfMatteSurfaces) {
     for (const Vec3 normal : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, -1, 0}, normalize({1, 1, -1})}) {
         const Vertex vertex = vertex_of(Lambert{{0.8f, 0.5f, 0.2f}}, 0.5f, normal);

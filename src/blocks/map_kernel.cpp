@@ -60,13 +60,30 @@ HWY_INLINE VF dot(const Vec3s& a, Vec3 b) {
     return hn::MulAdd(a.x, constant(b.x), hn::MulAdd(a.y, constant(b.y), hn::Mul(a.z, constant(b.z))));
 }
 
-/// A midpoint rule's error, relative to the value, may be so large.
-constexpr float quadrature_tolerance = 0.004f;
+/// A midpoint rule's error, relative to the value, may be so large; and so large what it misses where the
+/// lobe and radiance both vary within a tile, if they do so together.
+constexpr float quadrature_tolerance = 0.004f, covariance_tolerance = 0.01f;
 
-/// The error of one point per tile for a GGX lobe. The half vector moves half as much as the direction in the
-/// plane of incidence and 1 / |w_in + w_out| as much across it; over a square of side s the error is s²/24
-/// times the Laplacian, which is (20 t² − 4) / (α² (1 + t²)²) of the value, t = tan θ_m / α.
-HWY_INLINE VF lobe_error(const Vec3s& d, const TierQuery& q, float side2) {
+/// Of one point per tile for a GGX lobe, relative to its value.
+struct LobeErrors {
+    VF curvature;  // of the midpoint rule
+    VF slope;      // the lobe's standard deviation within the tile
+};
+
+/// From the sum of curvatures and the square of the gradient by half vector, per rad². The half vector moves
+/// half as much as the direction in the plane of incidence and 1 / |w_in + w_out| as much across it; over a
+/// square of side s the midpoint rule's error is s²/24 times the Laplacian, and the variance s²/12 times the
+/// gradient's square. `side2`: of half the tile's side.
+HWY_INLINE LobeErrors lobe_errors(VF curvatures, VF gradient2, VF half_length2, float side2) {
+    const VF axes = hn::Mul(
+        hn::MulAdd(constant(2), hn::Div(constant(1), hn::Max(half_length2, constant(1e-6f))), constant(0.5f)),
+        constant(side2 / 24));  // the mean of the squares, against half as much along both axes
+    return {hn::Mul(axes, curvatures), hn::Sqrt(hn::Mul(axes, hn::Mul(constant(2), gradient2)))};
+}
+
+/// The Laplacian is (20 t² − 4) / (α² (1 + t²)²) of the value and the gradient 4 t / (α (1 + t²)),
+/// t = tan θ_m / α.
+HWY_INLINE LobeErrors round_lobe_errors(const Vec3s& d, const TierQuery& q, float side2) {
     const F f;
     const Vec3s half{hn::Add(d.x, constant(q.w_out.x)), hn::Add(d.y, constant(q.w_out.y)),
                      hn::Add(d.z, constant(q.w_out.z))};
@@ -74,16 +91,13 @@ HWY_INLINE VF lobe_error(const Vec3s& d, const TierQuery& q, float side2) {
     const VF length2 = hn::MulAdd(half.x, half.x, hn::MulAdd(half.y, half.y, squared(half.z)));
     const float inverse_alpha2 = 1 / sqr(q.alpha);
     const VF t2 = hn::Mul(hn::Div(hn::Max(hn::Sub(length2, z2), hn::Zero(f)), z2), constant(inverse_alpha2));
-    // The mean of the squares, against half as much along both axes.
-    const VF axes =
-        hn::MulAdd(constant(2), hn::Div(constant(1), hn::Max(length2, constant(1e-6f))), constant(0.5f));
-    const VF numerator = hn::Mul(axes, hn::MulAdd(t2, constant(20), constant(4)));
-    return hn::Div(hn::Mul(numerator, constant(side2 / 24 * inverse_alpha2)),
-                   squared(hn::Add(t2, constant(1))));
+    const VF scale = hn::Div(constant(inverse_alpha2), squared(hn::Add(t2, constant(1))));
+    return lobe_errors(hn::Mul(hn::MulAdd(t2, constant(20), constant(4)), scale),
+                       hn::Mul(hn::Mul(t2, constant(16)), scale), length2, side2);
 }
 
 /// The same of a lobe with two roughnesses: of the curvatures along its axes the larger.
-HWY_INLINE VF stretched_lobe_error(const Vec3s& d, const TierQuery& q, float side2) {
+HWY_INLINE LobeErrors stretched_lobe_errors(const Vec3s& d, const TierQuery& q, float side2) {
     const F f;
     const Vec3s half{hn::Add(d.x, constant(q.w_out.x)), hn::Add(d.y, constant(q.w_out.y)),
                      hn::Add(d.z, constant(q.w_out.z))};
@@ -92,18 +106,18 @@ HWY_INLINE VF stretched_lobe_error(const Vec3s& d, const TierQuery& q, float sid
     const float inverse_x2 = 1 / sqr(q.alpha_x), inverse_y2 = 1 / sqr(q.alpha_y);
     const VF x2 = hn::Div(hn::Mul(squared(dot(half, q.axis_x)), constant(inverse_x2)), z2);
     const VF y2 = hn::Div(hn::Mul(squared(dot(half, q.axis_y)), constant(inverse_y2)), z2);
-    const VF axes =
-        hn::MulAdd(constant(2), hn::Div(constant(1), hn::Max(length2, constant(1e-6f))), constant(0.5f));
     const auto curvature = [&](VF along, VF across, float inverse_alpha2) {
         const VF numerator = hn::MulAdd(along, constant(20), hn::MulAdd(across, constant(4), constant(4)));
         return hn::Mul(numerator, constant(inverse_alpha2));
     };
     const VF most = hn::Max(curvature(x2, y2, inverse_x2), curvature(y2, x2, inverse_y2));
-    const VF spread = hn::Add(hn::Add(x2, y2), hn::Set(f, 1));
-    return hn::Div(hn::Mul(hn::Mul(axes, most), constant(side2 / 24)), squared(spread));
+    const VF gradient2 =
+        hn::Mul(constant(16), hn::MulAdd(x2, constant(inverse_x2), hn::Mul(y2, constant(inverse_y2))));
+    const VF spread2 = squared(hn::Add(hn::Add(x2, y2), hn::Set(f, 1)));
+    return lobe_errors(hn::Div(most, spread2), hn::Div(gradient2, spread2), length2, side2);
 }
 
-void choose_all(const DirectionGrid& grid, const TierQuery& q, std::span<const std::uint16_t> known,
+void choose_all(const DirectionGrid& grid, const TierQuery& q, const TileContent& content,
                 std::span<TileTier> tiers) {
     const F f;
     const I i;
@@ -116,21 +130,25 @@ void choose_all(const DirectionGrid& grid, const TierQuery& q, std::span<const s
         const VF sine = hn::LoadU(f, &grid.tile_sine[tile]);
         const VF above = hn::Min(dot(d, q.geometric_normal), dot(d, q.shading_normal));
         const hn::Rebind<std::uint16_t, F> u16;
-        const auto whole = hn::Eq(hn::PromoteTo(i, hn::LoadU(u16, &known[tile])), hn::Set(i, whole_tile));
-        auto fine = hn::Or(hn::RebindMask(i, hn::Lt(above, sine)), hn::Not(whole));
-        auto chosen = hn::Set(i, static_cast<std::int32_t>(q.exact ? TileTier::texels : TileTier::one));
+        const auto whole =
+            hn::Eq(hn::PromoteTo(i, hn::LoadU(u16, &content.known[tile])), hn::Set(i, whole_tile));
+        const auto fine = hn::Or(hn::RebindMask(i, hn::Lt(above, sine)), hn::Not(whole));
+        auto chosen = tier(q.exact ? TileTier::texels : TileTier::one);
         chosen = hn::IfThenElse(fine, tier(TileTier::texels), chosen);
         if (q.alpha > 0) {
-            const VF error =
-                q.alpha_x == q.alpha_y ? lobe_error(d, q, side2) : stretched_lobe_error(d, q, side2);
-            const auto raise = [&](float factor, TileTier t) {
-                chosen =
-                    hn::IfThenElse(hn::RebindMask(i, hn::Gt(error, constant(factor * quadrature_tolerance))),
-                                   tier(t), chosen);
+            const LobeErrors lobe =
+                q.alpha_x == q.alpha_y ? round_lobe_errors(d, q, side2) : stretched_lobe_errors(d, q, side2);
+            const VF share = hn::LoadU(f, &content.lobe_share[tile]);
+            const VF deviation = hn::Div(hn::Sqrt(hn::LoadU(f, &content.variance[tile])),
+                                         hn::Max(hn::LoadU(f, &content.luminance[tile]), constant(1e-30f)));
+            const auto raise = [&](VF error, float tolerance, TileTier t) {
+                const auto large = hn::Gt(hn::Mul(share, error), constant(tolerance));
+                chosen = hn::IfThenElse(hn::RebindMask(i, large), tier(t), chosen);
             };
-            raise(1, TileTier::texels);
-            raise(16, TileTier::quarters);
-            raise(64, TileTier::sixteenths);
+            raise(hn::Mul(lobe.slope, deviation), covariance_tolerance, TileTier::texels);
+            raise(lobe.curvature, quadrature_tolerance, TileTier::texels);
+            raise(lobe.curvature, 16 * quadrature_tolerance, TileTier::quarters);
+            raise(lobe.curvature, 64 * quadrature_tolerance, TileTier::sixteenths);
         }
         const auto below = hn::RebindMask(i, hn::Lt(above, hn::Neg(sine)));
         chosen = hn::IfThenElse(below, tier(TileTier::below), chosen);
@@ -138,16 +156,22 @@ void choose_all(const DirectionGrid& grid, const TierQuery& q, std::span<const s
     }
 }
 
+/// Radiance times cosine, over a blend.
 HWY_INLINE VF blended(const Blend& blend, const RadiancePlanes BlockMap::*planes, std::size_t channel,
-                      std::size_t tile) {
-    VF sum = hn::Zero(F());
-    for (const auto& [map, weight] : blend.maps())
-        sum = hn::MulAdd(constant(weight), hn::LoadU(F(), &(map->*planes).tile_means[channel][tile]), sum);
-    return sum;
+                      std::size_t tile, Vec3 normal) {
+    const F f;
+    Vec3s sum{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
+    for (const auto& [map, weight] : blend.maps()) {
+        const auto& moments = (map->*planes).tile_moments[channel];
+        sum.x = hn::MulAdd(constant(weight), hn::LoadU(f, &moments[0][tile]), sum.x);
+        sum.y = hn::MulAdd(constant(weight), hn::LoadU(f, &moments[1][tile]), sum.y);
+        sum.z = hn::MulAdd(constant(weight), hn::LoadU(f, &moments[2][tile]), sum.z);
+    }
+    return dot(sum, normal);
 }
 
-void sum_tiles_all(const Blend& blend, std::span<const TileTier> tiers, const BsdfPlanes& bsdf,
-                   ReflectedSums& out) {
+void sum_tiles_all(const DirectionGrid& grid, Vec3 normal, const Blend& blend,
+                   std::span<const TileTier> tiers, const BsdfPlanes& bsdf, ReflectedSums& out) {
     const F f;
     const I i;
     const std::size_t lanes = hn::Lanes(f);
@@ -161,12 +185,18 @@ void sum_tiles_all(const Blend& blend, std::span<const TileTier> tiers, const Bs
         for (float* channel : bsdf.channel)
             hn::StoreU(hn::IfThenElseZero(one, hn::LoadU(f, channel + tile)), f, channel + tile);
         if (hn::AllFalse(f, one)) continue;
-        direct.add(bsdf, tile, blended(blend, &BlockMap::direct, 0, tile),
-                   blended(blend, &BlockMap::direct, 1, tile), blended(blend, &BlockMap::direct, 2, tile));
+        const Vec3s d{hn::LoadU(f, &grid.tile_x[tile]), hn::LoadU(f, &grid.tile_y[tile]),
+                      hn::LoadU(f, &grid.tile_z[tile])};
+        const VF cosine = hn::Mul(dot(d, normal), hn::LoadU(f, &grid.tile_length[tile]));  // its mean
+        const VF scale = hn::Div(constant(1), hn::Max(cosine, constant(1e-6f)));
+        const auto radiance = [&](const RadiancePlanes BlockMap::*planes, std::size_t channel) {
+            return hn::Mul(scale, blended(blend, planes, channel, tile, normal));
+        };
+        direct.add(bsdf, tile, radiance(&BlockMap::direct, 0), radiance(&BlockMap::direct, 1),
+                   radiance(&BlockMap::direct, 2));
         if (with_indirect)
-            indirect.add(bsdf, tile, blended(blend, &BlockMap::indirect, 0, tile),
-                         blended(blend, &BlockMap::indirect, 1, tile),
-                         blended(blend, &BlockMap::indirect, 2, tile));
+            indirect.add(bsdf, tile, radiance(&BlockMap::indirect, 0), radiance(&BlockMap::indirect, 1),
+                         radiance(&BlockMap::indirect, 2));
         albedo.add(bsdf, tile, constant(1), constant(1), constant(1));
     }
     out = {direct.total(), indirect.total(), albedo.total()};
@@ -270,14 +300,15 @@ HWY_EXPORT(sum_open_all);
 
 void blend_tiles(const Blend& blend, const BlendedTiles& out) { HWY_DYNAMIC_DISPATCH(blend_all)(blend, out); }
 
-void choose_tiers(const DirectionGrid& grid, const TierQuery& query, std::span<const std::uint16_t> known,
+void choose_tiers(const DirectionGrid& grid, const TierQuery& query, const TileContent& content,
                   std::span<TileTier> tiers) {
-    HWY_DYNAMIC_DISPATCH(choose_all)(grid, query, known, tiers);
+    HWY_DYNAMIC_DISPATCH(choose_all)(grid, query, content, tiers);
 }
 
-ReflectedSums sum_tiles(const Blend& blend, std::span<const TileTier> tiers, const BsdfPlanes& bsdf) {
+ReflectedSums sum_tiles(const DirectionGrid& grid, Vec3 shading_normal, const Blend& blend,
+                        std::span<const TileTier> tiers, const BsdfPlanes& bsdf) {
     ReflectedSums sums;
-    HWY_DYNAMIC_DISPATCH(sum_tiles_all)(blend, tiers, bsdf, sums);
+    HWY_DYNAMIC_DISPATCH(sum_tiles_all)(grid, shading_normal, blend, tiers, bsdf, sums);
     return sums;
 }
 

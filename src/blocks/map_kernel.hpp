@@ -30,7 +30,13 @@ struct BlendedTiles {
 };
 void blend_tiles(const Blend& blend, const BlendedTiles& out);
 
-void choose_tiers(const DirectionGrid& grid, const TierQuery& query, std::span<const std::uint16_t> known,
+/// What else decides, by tile: how much of f at its centre is the lobe's, [0, 1] (not read without a lobe),
+/// and what a blend holds there.
+struct TileContent {
+    std::span<const float> lobe_share, luminance, variance;
+    std::span<const std::uint16_t> known;
+};
+void choose_tiers(const DirectionGrid& grid, const TierQuery& query, const TileContent& content,
                   std::span<TileTier> tiers);
 
 /// Sums over tiles or texels of f·|cos θ| times radiance, and of f·|cos θ| alone.
@@ -38,9 +44,10 @@ struct ReflectedSums {
     Spectrum direct, indirect, albedo;
 };
 
-/// Over the tiles of tier `one`. f is 0 afterwards in all others.
-[[nodiscard]] ReflectedSums sum_tiles(const Blend& blend, std::span<const TileTier> tiers,
-                                      const BsdfPlanes& bsdf);
+/// Over the tiles of tier `one`, in each of which f is what it is at the centre and |cos θ|, against
+/// `shading_normal`, follows its texels. f is 0 afterwards in all others.
+[[nodiscard]] ReflectedSums sum_tiles(const DirectionGrid& grid, Vec3 shading_normal, const Blend& blend,
+                                      std::span<const TileTier> tiers, const BsdfPlanes& bsdf);
 
 /// What else is wanted of a tile's texels.
 struct TexelSums {

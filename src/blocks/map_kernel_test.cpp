@@ -84,52 +84,71 @@ TEST(MapKernel, BlendsTilesOnEveryTarget) {
         });
 }
 
+struct LobeErrors {
+    float curvature, slope;
+};
+
 /// The same of a lobe with two roughnesses: the curvature along the axis where it is larger.
-float stretched_error(Vec3 d, const TierQuery& q, float side2) {
+LobeErrors stretched_errors(Vec3 d, const TierQuery& q, float side2) {
     const Vec3 half = d + q.w_out;
     const float z2 = std::max(sqr(dot(half, q.shading_normal)), 1e-12f);
     const float x2 = sqr(dot(half, q.axis_x) / q.alpha_x) / z2,
                 y2 = sqr(dot(half, q.axis_y) / q.alpha_y) / z2;
     const float most =
         std::max((20 * x2 + 4 * y2 + 4) / sqr(q.alpha_x), (20 * y2 + 4 * x2 + 4) / sqr(q.alpha_y));
-    return (0.5f + 2 / length_squared(half)) * most / sqr(1 + x2 + y2) * side2 / 24;
+    const float axes = 0.5f + 2 / length_squared(half), spread = 1 + x2 + y2;
+    const float gradient = 4 * std::sqrt(x2 / sqr(q.alpha_x) + y2 / sqr(q.alpha_y)) / spread;
+    return {axes * most / sqr(spread) * side2 / 24, gradient * std::sqrt(axes * side2 / 12)};
 }
 
-/// The kernel's error of one point per tile, in other words.
-float lobe_error(Vec3 d, const TierQuery& q, float side2) {
+/// The kernel's errors of one point per tile, in other words.
+LobeErrors lobe_errors(Vec3 d, const TierQuery& q, float side2) {
     const Vec3 half = normalize(d + q.w_out);
     const float cosine = std::max(std::abs(dot(half, q.shading_normal)), 1e-6f);
     const float t2 = (1 / sqr(cosine) - 1) / sqr(q.alpha);
     // The half vector's motion squared, mean of both axes, against half the direction's.
     const float axes = 0.5f + 2 / length_squared(d + q.w_out);
-    return axes * (20 * t2 + 4) / sqr(1 + t2) * side2 / (24 * sqr(q.alpha));
+    return {axes * (20 * t2 + 4) / sqr(1 + t2) * side2 / (24 * sqr(q.alpha)),
+            4 * std::sqrt(t2) / (q.alpha * (1 + t2)) * std::sqrt(axes * side2 / 12)};
 }
 
 /// The tier, or empty where rounding may decide.
-std::optional<TileTier> tier_of(const DirectionGrid& grid, const TierQuery& q, std::uint16_t known,
+std::optional<TileTier> tier_of(const DirectionGrid& grid, const TierQuery& q, const TileContent& content,
                                 std::size_t tile) {
     const Vec3 d = grid.tile_center(tile).v;
     const float above = std::min(dot(d, q.geometric_normal), dot(d, q.shading_normal)),
                 sine = grid.tile_sine[tile];
     if (std::abs(std::abs(above) - sine) < 1e-5f) return std::nullopt;
     if (above < -sine) return TileTier::below;
-    TileTier tier = q.exact || above < sine || known != whole_tile ? TileTier::texels : TileTier::one;
+    TileTier tier =
+        q.exact || above < sine || content.known[tile] != whole_tile ? TileTier::texels : TileTier::one;
     if (q.alpha <= 0) return tier;
     const float side2 = grid.texel_solid_angle * 4;
-    const float error =
-        (q.alpha_x == q.alpha_y ? lobe_error(d, q, side2) : stretched_error(d, q, side2)) / 0.004f;
-    const std::array<std::pair<float, TileTier>, 3> steps{
-        {{1, TileTier::texels}, {16, TileTier::quarters}, {64, TileTier::sixteenths}}};
-    for (const auto& [step, finer] : steps) {
-        if (std::abs(error - step) < 1e-3f * step) return std::nullopt;
-        if (error > step) tier = finer;
+    const LobeErrors lobe = q.alpha_x == q.alpha_y ? lobe_errors(d, q, side2) : stretched_errors(d, q, side2);
+    const float share = content.lobe_share[tile];
+    const float covariance =
+        share * lobe.slope * std::sqrt(content.variance[tile]) / content.luminance[tile] / 0.01f;
+    const float error = share * lobe.curvature / 0.004f;
+    const std::array<std::tuple<float, float, TileTier>, 4> steps{{{covariance, 1, TileTier::texels},
+                                                                   {error, 1, TileTier::texels},
+                                                                   {error, 16, TileTier::quarters},
+                                                                   {error, 64, TileTier::sixteenths}}};
+    for (const auto& [found, step, finer] : steps) {
+        if (std::abs(found - step) < 1e-3f * step) return std::nullopt;
+        if (found > step) tier = finer;
     }
     return tier;
 }
 
 TEST(MapKernel, ChoosesTiersOnEveryTarget) {
     const Case c(64, 1, false);
-    const std::vector<std::uint16_t>& known = c.maps[0].known;
+    std::vector<float> lobe_share, luminance, variance;
+    for (std::size_t tile = 0; tile < c.grid.tiles; ++tile) {
+        lobe_share.push_back(tile % 4 == 0 ? 1 : uniform(tile, 31));
+        luminance.push_back(uniform(tile, 32, 0.5f, 2));
+        variance.push_back(tile % 3 == 0 ? 0 : sqr(uniform(tile, 33)));
+    }
+    const TileContent content{lobe_share, luminance, variance, c.maps[0].known};
     for (std::uint64_t pose = 0; pose < 12; ++pose) {
         const Vec3 normal = random_direction(pose, 1).v;
         const Vec3 shading = normalize(normal + random_direction(pose, 3).v * 0.3f);
@@ -152,11 +171,11 @@ TEST(MapKernel, ChoosesTiersOnEveryTarget) {
         }
         on_every_target([&] {
             std::vector<TileTier> tiers(c.grid.tiles);
-            choose_tiers(c.grid, query, known, tiers);
+            choose_tiers(c.grid, query, content, tiers);
             std::size_t open = 0;
             std::array<int, 5> met{};
             for (std::size_t tile = 0; tile < c.grid.tiles; ++tile) {
-                const auto expected = tier_of(c.grid, query, known[tile], tile);
+                const auto expected = tier_of(c.grid, query, content, tile);
                 open += !expected;
                 if (expected) {
                     ASSERT_EQ(static_cast<int>(tiers[tile]), static_cast<int>(*expected)) << tile;
@@ -181,20 +200,29 @@ TEST(MapKernel, SumsTilesOnEveryTarget) {
         for (std::uint64_t tile = 0; tile < c.grid.tiles; ++tile)
             tiers.push_back(static_cast<TileTier>(hash(tile, 9) % 3));
         const Planes bsdf = random_bsdf(c.grid.tiles);
+        const Vec3 normal = random_direction(3, 4).v;
         ReflectedSums expected;
         for (std::size_t tile = 0; tile < c.grid.tiles; ++tile) {
+            const float cosine = dot(c.grid.tile_center(tile).v, normal) * c.grid.tile_length[tile];
+            if (cosine < 0.1f) tiers[tile] = TileTier::below;
             if (tiers[tile] != TileTier::one) continue;
-            const Spectrum f = at(bsdf, tile);
+            const Spectrum f = at(bsdf, tile) / cosine;
+            const auto received = [&](const RadiancePlanes& planes) {
+                const auto channel = [&](std::size_t k) {
+                    const auto& m = planes.tile_moments[k];
+                    return dot(Vec3{m[0][tile], m[1][tile], m[2][tile]}, normal);
+                };
+                return Spectrum{channel(0), channel(1), channel(2)};
+            };
             for (const auto& [map, weight] : c.blend.maps()) {
-                expected.direct += f * at(map->direct.tile_means, tile) * weight;
-                if (!map->indirect.empty())
-                    expected.indirect += f * at(map->indirect.tile_means, tile) * weight;
+                expected.direct += f * received(map->direct) * weight;
+                if (!map->indirect.empty()) expected.indirect += f * received(map->indirect) * weight;
             }
-            expected.albedo += f;
+            expected.albedo += at(bsdf, tile);
         }
         on_every_target([&] {
             Planes planes = bsdf;
-            expect_near(sum_tiles(c.blend, tiers, pointers(planes)), expected);
+            expect_near(sum_tiles(c.grid, normal, c.blend, tiers, pointers(planes)), expected);
             for (std::size_t tile = 0; tile < c.grid.tiles; ++tile)
                 ASSERT_EQ(at(planes, tile), tiers[tile] == TileTier::one ? at(bsdf, tile) : Spectrum{});
         });

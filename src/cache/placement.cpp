@@ -17,7 +17,8 @@ constexpr float least_reach = 3, most_reach = 24;
 /// Levels this coarse are worth measuring gaps for: finer ones would cost a reprojection at every pixel.
 constexpr int finest_measured_spacing = 4;
 
-constexpr std::size_t chunk = 16;  // points that one piece of work decides on or makes records for
+constexpr std::size_t chunk = 16;   // points that one piece of work decides on or makes records for
+constexpr std::size_t batch = 256;  // records made before it is seen whether they fit, where room is limited
 
 bool on_coarser_lattice(int x, int y, int spacing) {
     return spacing < level_spacings.front() && x % (2 * spacing) == 0 && y % (2 * spacing) == 0;
@@ -37,6 +38,7 @@ class Placement {
           run_(run) {}
 
     void place_level(int spacing) {
+        if (run_.room == 0) return;
         std::vector<const CachePoint*> points = lattice_points(spacing);
         std::vector<char> lacks(points.size());  // not vector<bool>: threads write neighbours
         decide(points, spacing, lacks);
@@ -44,7 +46,9 @@ class Placement {
         for (std::size_t i = 0; i < points.size(); ++i)
             if (lacks[i]) points[wanted++] = points[i];
         points.resize(wanted);
-        make(points, spacing);
+        const std::size_t at_a_time = run_.room == no_limit ? wanted : batch;
+        for (std::size_t i = 0; i < wanted && run_.room > 0; i += at_a_time)
+            make(std::span(points).subspan(i, std::min(at_a_time, wanted - i)), spacing);
     }
 
   private:
@@ -81,7 +85,7 @@ class Placement {
         return cover(found, receiver, settings_, false, scratch, counts) > settings_.most_gaps;
     }
 
-    void make(const std::vector<const CachePoint*>& points, int spacing) {
+    void make(std::span<const CachePoint* const> points, int spacing) {
         std::vector<std::optional<CacheEntry>> entries(points.size());
         for_chunks(points.size(), [&](std::size_t begin, std::size_t end, PlacementRun& mine) {
             for (std::size_t i = begin; i < end; ++i)
@@ -89,7 +93,15 @@ class Placement {
                                         mine.rays, mine.counts);
         });
         for (auto& entry : entries)
-            if (entry) added_.add(std::move(*entry));
+            if (entry && fits(entry->record)) added_.add(std::move(*entry));
+    }
+
+    /// Takes what the record needs from the room that is left; nothing is left once a record does not fit.
+    [[nodiscard]] bool fits(const Record& record) {
+        if (run_.room == no_limit) return true;
+        const bool fits = record.bytes() <= run_.room;
+        run_.room = fits ? run_.room - record.bytes() : 0;
+        return fits;
     }
 
     /// Calls work(begin, end, counters) for chunks of [0, count) on all threads.

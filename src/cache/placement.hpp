@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/cache_counts.hpp"
+#include "base/memory.hpp"
 #include "cache/lookup.hpp"
 #include "relumine/image.hpp"
 
@@ -57,11 +58,13 @@ struct PlacementRun {
     std::function<bool()> stop;  // asked often; true: come to an end soon
     RayCounts rays;
     CacheCounts counts;
+    std::uint64_t room = no_limit;  // bytes that new records may take; fine levels come last and go without
 };
 
 /// Adds records to `added` for the pixels of `region` until every point has one that it may use, from `kept`
 /// or `added`. Each level decides in parallel against the coarser ones and adds in order of pixels.
 /// `point_at` gives the points; null: none there.
+/// Where run.room does not suffice, points are left without; which ones, threads do not decide.
 void place_records(const IncidentRadiance& source, const PixelRect& region,
                    const std::function<const CachePoint*(int x, int y)>& point_at,
                    const CacheSettings& settings, const RadianceCache& kept, RadianceCache& added,

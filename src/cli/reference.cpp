@@ -47,4 +47,8 @@ nlohmann::ordered_json reference_json(const std::string& path, const Comparison&
             {"relmse", c.relmse}, {"mean_ratio", c.mean_ratio},   {"non_finite_pixels", c.non_finite_pixels}};
 }
 
+nlohmann::ordered_json coverage_json(const ErrorCoverage& c) {
+    return {{"pixels", c.pixels}, {"one_sigma", c.one_sigma}, {"two_sigma", c.two_sigma}};
+}
+
 }  // namespace relumine::cli

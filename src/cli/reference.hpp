@@ -15,5 +15,6 @@ namespace relumine::cli {
 [[nodiscard]] Image read_reference(const std::string& path, const PictureFrame& frame);
 
 [[nodiscard]] nlohmann::ordered_json reference_json(const std::string& path, const Comparison& comparison);
+[[nodiscard]] nlohmann::ordered_json coverage_json(const ErrorCoverage& coverage);
 
 }  // namespace relumine::cli

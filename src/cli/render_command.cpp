@@ -173,6 +173,8 @@ ExitCode render_to_files(const RenderOptions& options, const std::string& comman
     if (reference) {
         rendered.error = compare_images(rendered.image, *reference);
         stats["reference"] = reference_json(options.reference, *rendered.error);
+        if (const auto coverage = error_coverage(rendered.image, *reference))
+            stats["reference"]["coverage"] = coverage_json(*coverage);
     }
     if (!options.stats_file.empty()) write_text(options.stats_file, json_text(stats, 2) + "\n");
     events.finished(static_cast<int>(code), stats);

@@ -16,6 +16,7 @@ enum class Develop {
     mean,
     first /* value of sample 0 */,
     variance /* from sums and sums of squares */,
+    error /* from sums of luminance, its variance and what errs alike in all passes */,
     samples
 };
 
@@ -40,6 +41,11 @@ float variance_of_mean(float sum, float sum_of_squares, float n) {
 
 }  // namespace
 
+/// One sigma over the value itself; the number of samples cancels out. 0 where nothing is known or all black.
+float relative_error(float sum, float variance, float deviation) {
+    return sum > 0 ? std::sqrt(std::max(0.0f, variance) + deviation * deviation) / sum : 0;
+}
+
 /// A layer: its channels and what of a pixel's sums goes into them.
 struct Film::LayerSpec {
     const char* name;
@@ -48,9 +54,10 @@ struct Film::LayerSpec {
     void (*extract)(const PixelSums&, std::span<float>);
     bool surface = false;  // needs FirstSurface
 
-    /// Floats kept per pixel: a variance is made of the sum and the sum of squares.
+    /// Floats kept per pixel.
     [[nodiscard]] std::size_t stored() const {
-        return develop == Develop::variance ? 2 * channels.size() : channels.size();
+        const std::size_t sums = develop == Develop::variance ? 2 : develop == Develop::error ? 3 : 1;
+        return sums * channels.size();
     }
 };
 
@@ -78,13 +85,21 @@ const std::vector<Film::LayerSpec>& Film::known_layers() {
              put(o, p.radiance);
              put(o.subspan(3), p.radiance_squared);
          }},
+        {"error",
+         {"Y"},
+         Develop::error,
+         [](S p, Out o) {
+             o[0] = luminance(p.radiance);
+             o[1] = p.error.variance;
+             o[2] = p.error.deviation;
+         }},
     };
     return layers;
 }
 
 std::vector<std::string> film_layer_names() {
-    return {"albedo",   "normal",  "position", "depth", "material_id", "emission", "direct",
-            "indirect", "samples", "records",  "gaps",  "layers",      "unknown",  "variance"};
+    return {"albedo",  "normal",  "position", "depth",  "material_id", "emission", "direct", "indirect",
+            "samples", "records", "gaps",     "layers", "unknown",     "variance", "error"};
 }
 
 bool needs_surfaces(const std::vector<std::string>& layers) {
@@ -205,6 +220,7 @@ Image Film::develop() const {
                 if (spec->develop == Develop::first || spec->develop == Develop::samples) out = sums[c];
                 if (spec->develop == Develop::variance)
                     out = variance_of_mean(sums[c], sums[c + channels], n);
+                if (spec->develop == Develop::error) out = relative_error(sums[0], sums[1], sums[2]);
             }
         }
         image.layers.push_back(std::move(layer));

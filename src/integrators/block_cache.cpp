@@ -9,7 +9,9 @@
 #include "base/pixel_rect.hpp"
 #include "blocks/dim_environment.hpp"
 #include "integrators/cell_rows.hpp"
+#include "integrators/error_prediction.hpp"
 #include "integrators/gather_estimate.hpp"
+#include "integrators/light_pilot.hpp"
 #include "integrators/light_source.hpp"
 #include "integrators/lit_sample.hpp"
 #include "integrators/path_tracer.hpp"
@@ -21,18 +23,21 @@ namespace relumine {
 namespace {
 
 constexpr std::uint32_t samples_per_pass = 16;  // that share maps
-constexpr int filter_levels = 3, bright_filter_levels = 1;
+constexpr int filter_levels = 3;
 
 /// Radiance over which light is bright, and below which relative errors do not matter, against the
 /// environment's mean.
 constexpr float bright_factor = 128, least_level = 0.05f;
+
+/// Of a record, about.
+constexpr std::uint64_t usual_record_bytes = 55'000;
 
 /// Texels along each side of the world's square.
 constexpr int grid_side = 64;
 
 /// What the filter needs of a pixel beside its guide.
 struct PixelResidual {
-    MapRadiance residual;
+    Spectrum direct, indirect;  // dim
     Spectrum bright;
     Spectrum albedo;  // directional, times the throughput of what is before
 };
@@ -43,7 +48,22 @@ struct Workspace {
     MapIntegral matte;  // of its diffuse part, if has_matte
     bool has_matte = false;
     ResidualDistribution distribution;
-    std::vector<LitSample> samples;  // of the pixel
+};
+
+/// The samples of a cell on their way.
+struct LitCell {
+    PixelRect rect;
+    std::size_t per_pixel;
+    std::vector<LitSample> samples;  // pixel by pixel, row-major
+    std::vector<PilotLight> pilots;  // by pixel
+
+    [[nodiscard]] std::span<LitSample> at(int x, int y) {
+        const int pixel = (y - rect.y0) * rect.width() + x - rect.x0;
+        return std::span(samples).subspan(static_cast<std::size_t>(pixel) * per_pixel, per_pixel);
+    }
+    [[nodiscard]] ExpectedLight expected(int x, int y) const {
+        return expected_light(pilots, rect.width(), x - rect.x0, y - rect.y0);
+    }
 };
 
 Spectrum divided(Spectrum a, Spectrum b) {
@@ -58,6 +78,7 @@ class BlockCache final : public Integrator {
         : transport_(transport),
           view_(view),
           surface_layers_(surface_layers),
+          predicts_(std::ranges::find(settings.aovs, "error") != settings.aovs.end()),
           plan_(plan),
           max_depth_(depth_limit(settings)),
           source_(incident_source(settings, transport)),
@@ -75,19 +96,26 @@ class BlockCache final : public Integrator {
     [[nodiscard]] std::uint32_t longest_pass() const override { return samples_per_pass; }
 
     [[nodiscard]] bool works_in_preparation() const override { return true; }
-    [[nodiscard]] std::uint64_t known_bytes() const override {  // maps are not
-        const std::size_t filtered = plan_.filters ? sizeof(PixelResidual) + sizeof(FilterGuide) : 0;
+    [[nodiscard]] std::uint64_t known_bytes() const override {  // of records and maps the least
+        const std::size_t filtered = (plan_.filters ? sizeof(PixelResidual) : 0)
+                                     + (estimates_noise() ? sizeof(FilterGuide) + sizeof(PixelDoubt) : 0);
         const auto row =
             static_cast<std::size_t>(std::min(view_.window.width() + 5 * cell_pixels, view_.width));
         return count(region()) * (sizeof(PixelSums) + filtered)
-               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel);
+               + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel) + least_bytes();
+    }
+    void keep_within(std::uint64_t bytes) override {
+        plan_.blocks.map_weight = double{CellRows::with_maps} / double{CellRows::most};
+        plan_.blocks.most_bytes = static_cast<double>(bytes + least_bytes()) / static_cast<double>(cells())
+                                  / double{CellRows::most};
     }
 
     void prepare(Preparation& p) override {
         region_ = region();
         pixels_.assign(count(region_), {});
         residuals_.assign(plan_.filters ? count(region_) : 0, {});
-        guides_.assign(plan_.filters ? count(region_) : 0, {});
+        guides_.assign(estimates_noise() ? count(region_) : 0, {});
+        doubts_.assign(estimates_noise() ? count(region_) : 0, {});
         constexpr int margin = CellRows::reach * cell_pixels;
         const MapSource maps{map_source_, split_, grid_, environment_};
         CellRows rows({transport_, view_, surface_layers_, max_depth_, maps}, plan_, region_);
@@ -98,7 +126,7 @@ class BlockCache final : public Integrator {
             rows.release();
             if (p.progress) p.progress(static_cast<double>(y - cell_pixels - region_.y0) / region_.height());
         }
-        if (plan_.filters) filter(p);  // after a stop, too: what is lit may be all there is to show
+        add_found(p);  // after a stop, too: what is lit may be all there is to show
     }
 
     void render(Tile& tile) const override {
@@ -120,10 +148,25 @@ class BlockCache final : public Integrator {
     static std::size_t count(const PixelRect& r) {
         return static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height());
     }
+    /// Whether pixels must know their surroundings.
+    [[nodiscard]] bool estimates_noise() const { return plan_.filters || predicts_; }
     /// What a pass computes: the window, and what its filter reaches.
     [[nodiscard]] PixelRect region() const {
-        return intersection(aligned(grown(view_.window, plan_.filters ? filter_reach(filter_levels) : 0)),
-                            {0, 0, view_.width, view_.height});
+        const int reach = plan_.filters ? smoothing_reach(filter_levels)
+                          : predicts_   ? filter_reach(noise_levels)
+                                        : 0;
+        return intersection(aligned(grown(view_.window, reach)), {0, 0, view_.width, view_.height});
+    }
+    /// Of a row.
+    [[nodiscard]] std::uint64_t cells() const {
+        const int width = std::min(region().width() + 2 * CellRows::reach * cell_pixels, view_.width);
+        return static_cast<std::uint64_t>((width + cell_pixels - 1) / cell_pixels + 1);
+    }
+    /// Room for two records and maps in each cell: with less, many samples would have none.
+    [[nodiscard]] std::uint64_t least_bytes() const {
+        return 2 * cells()
+               * (CellRows::with_maps * BlockMap::bytes(grid_, map_source_.reflects())
+                  + CellRows::most * usual_record_bytes);
     }
     [[nodiscard]] std::size_t index_of(int x, int y) const {
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width())
@@ -139,15 +182,16 @@ class BlockCache final : public Integrator {
             if (cell.x0 >= cell.x1 || p.stop()) return;
             const std::vector<const BlockMap*> candidates = rows.maps_around(i);
             const MapIntegral integral(grid_, points_, environment_, plan_.exact);
-            Workspace workspace{integral, integral, false, ResidualDistribution(grid_), {}};
+            Workspace workspace{integral, integral, false, ResidualDistribution(grid_)};
             RayCounts rays;
             CacheCounts counts;
             WorkDone dropped;
+            LitCell lit = begin_cell(here, cell, rays, counts);
             for (int y = cell.y0; y < cell.y1; ++y)
                 for (int x = cell.x0; x < cell.x1; ++x) {
                     Tile sums = make_tile({x, y, x + 1, y + 1}, 0, 0);
                     sums.probe = p.probe;
-                    light_pixel(here, candidates, workspace, sums, rays, counts);
+                    light_pixel(here, candidates, lit, workspace, sums, rays, counts);
                     if (contains(view_.window, x, y)) dropped.add(sums.non_finite, sums.first_non_finite);
                 }
             const std::lock_guard lock(mutex);
@@ -157,46 +201,83 @@ class BlockCache final : public Integrator {
         });
     }
 
+    /// The light of lights without size on all samples of a cell, and the first samples of the others.
+    LitCell begin_cell(const CellRow& row, const PixelRect& rect, RayCounts& rays,
+                       CacheCounts& counts) const {
+        const StepTimer timer(counts, CacheStep::product);
+        LitCell cell{rect, row.samples.size(), {}, std::vector<PilotLight>(count(rect))};
+        cell.samples.resize(count(rect) * cell.per_pixel);
+        const ResidualSettings settings = residual_settings();
+        ResidualEstimator estimator(settings, rays);
+        const float pilot =
+            plan_.demand.light_adapts ? plan_.demand.pilot / plan_.pixel_samples : plan_.rays.light;
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x)
+                for (std::size_t s = 0; s < cell.per_pixel; ++s) {
+                    LitSample& sample = cell.at(x, y)[s];
+                    sample.pixel = &row.samples[s]->at(x, y);
+                    if (!sample.pixel->point) continue;
+                    const ShadingPoint& point = *sample.pixel->point;
+                    sample.delta =
+                        delta_light(transport_, point.vertex,
+                                    sample.pixel->stream.bits(Dim::opacity, 2 * point.path.depth + 1), rays);
+                    if (!sample.pixel->reflects_alone) continue;
+                    sample.bsdf = *receiver_bsdf(point.vertex, map_frame);
+                    estimator.add_light(point, sample.pixel->stream, pilot, LightSeries::first,
+                                        sample.sampled.light);
+                }
+        estimator.finish();
+        for (std::size_t i = 0; i < cell.samples.size(); ++i)
+            if (const LitSample& sample = cell.samples[i]; sample.pixel->reflects_alone)
+                cell.pilots[i / cell.per_pixel].add(sample.sampled.light,
+                                                    luminance(sample.pixel->point->path.throughput));
+        return cell;
+    }
+
+    [[nodiscard]] ResidualSettings residual_settings() const {
+        return {source_, split_, environment_, plan_.rays, plan_.exact};
+    }
+
     /// `sums`: of the pixel, empty.
-    void light_pixel(const CellRow& row, std::span<const BlockMap* const> candidates, Workspace& w,
-                     Tile& sums, RayCounts& rays, CacheCounts& counts) {
+    void light_pixel(const CellRow& row, std::span<const BlockMap* const> candidates, LitCell& cell,
+                     Workspace& w, Tile& sums, RayCounts& rays, CacheCounts& counts) {
         const int x = sums.rect.x0, y = sums.rect.y0;
-        w.samples.clear();
-        for (const auto& samples : row.samples) {
-            LitSample& sample = w.samples.emplace_back();
-            sample.pixel = &samples->at(x, y);
-            if (sample.pixel->reflects_alone)
-                sample.bsdf = *receiver_bsdf(sample.pixel->point->vertex, map_frame);
-        }
-        light_from_maps(candidates, w, rays, counts);
+        const std::span<LitSample> samples = cell.at(x, y);
+        light_from_maps(candidates, samples, cell.expected(x, y), w, rays, counts);
         PixelResidual residual;
-        for (const LitSample& sample : w.samples) finish_sample(sample, sums, residual, rays);
+        DoubtSum doubt;
+        for (const LitSample& sample : samples) finish_sample(sample, sums, residual, doubt, rays);
         pixels_[index_of(x, y)] = sums.pixels[0];
-        if (!plan_.filters) return;
-        residuals_[index_of(x, y)] = residual;
+        if (plan_.filters) residuals_[index_of(x, y)] = residual;
+        if (!estimates_noise()) return;
+        doubts_[index_of(x, y)] = doubt.finish();
         guides_[index_of(x, y)] = guide_of(row, x, y);
     }
 
     /// Map integrals and residual rays of a pixel's samples. Samples that see the same surface alike share an
     /// integral.
-    void light_from_maps(std::span<const BlockMap* const> candidates, Workspace& w, RayCounts& rays,
+    void light_from_maps(std::span<const BlockMap* const> candidates, std::span<LitSample> samples,
+                         const ExpectedLight& bright, Workspace& w, RayCounts& rays,
                          CacheCounts& counts) const {
-        const ResidualSettings settings{source_, split_, environment_, plan_.rays, plan_.exact};
+        const ResidualSettings settings = residual_settings();
         ResidualEstimator estimator(settings, rays);
-        for (std::size_t i = 0; i < w.samples.size(); ++i) {
-            const LitSample& first = w.samples[i];
+        std::vector<FoundLight> more(samples.size());
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const LitSample& first = samples[i];
             if (!first.pixel->reflects_alone || first.done) continue;
             const Blend blend = blend_maps(first.pixel->cache, candidates);
             if (blend.empty()) {
-                w.samples[i].reflected =
-                    monte_carlo_.reflected(*first.pixel->point, first.pixel->stream, rays);
+                samples[i].reflected = monte_carlo_.reflected(*first.pixel->point, first.pixel->stream, rays);
+                samples[i].sampled = {};
                 ++counts.gathered;
                 continue;
             }
             integrate(first, blend, w, counts);
+            const RayBudget budget =
+                budget_of(first, bright, w, pass_share(samples.size(), plan_.pixel_samples));
             const StepTimer timer(counts, CacheStep::product);
-            for (std::size_t j = i; j < w.samples.size(); ++j) {
-                LitSample& sample = w.samples[j];
+            for (std::size_t j = i; j < samples.size(); ++j) {
+                LitSample& sample = samples[j];
                 if (!sample.pixel->reflects_alone || sample.done
                     || (j != i && !shares_integral(first, sample, plan_.exact)))
                     continue;
@@ -204,22 +285,52 @@ class BlockCache final : public Integrator {
                 sample.maps = static_cast<float>(blend.maps().size());
                 const Spectrum scale = diffuse_ratio(first, sample);
                 take_reflected(first, blend, scale, w, sample);
+                if (estimates_noise()) sample.deviation = luminance(scale) * w.integral.deviation();
                 ++counts.points;
                 estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution,
-                               has_layers(first.bsdf) ? Spectrum{1} : scale},
+                               has_layers(first.bsdf) ? Spectrum{1} : scale, budget.residual},
                               sample.sampled);
+                estimator.add_light(*sample.pixel->point, sample.pixel->stream, budget.light,
+                                    LightSeries::second, more[j]);
             }
             estimator.finish();
         }
+        for (std::size_t i = 0; i < samples.size(); ++i) samples[i].sampled.light.join(more[i]);
+    }
+
+    /// √ of the samples of this pass over all of the picture's: the whole errs less than a pass by as much.
+    [[nodiscard]] static float pass_share(std::size_t samples, float all) {
+        return std::sqrt(std::min(1.0f, static_cast<float>(samples) / all));
+    }
+
+    /// Rays for a sample with the integral in `w`: as many as its expected error asks for. Nothing that they
+    /// are to find may count.
+    [[nodiscard]] RayBudget budget_of(const LitSample& sample, const ExpectedLight& bright,
+                                      const Workspace& w, float pass_share) const {
+        const RayDemand& demand = plan_.demand;
+        const MapRadiance held = w.integral.reflected();
+        const float throughput = luminance(sample.pixel->point->path.throughput);
+        const float shines = luminance(sample.pixel->emission)
+                             + throughput * luminance(held.direct + held.indirect + sample.delta)
+                             + bright.mean;
+        if (!(shines > 0)) return {plan_.rays.residual, 0};
+        RayBudget budget{plan_.rays.residual, 0};
+        if (demand.residual_adapts && plan_.rays.residual > 0)
+            budget.residual =
+                demand.residual_rays(throughput * w.integral.deviation() / shines) / plan_.pixel_samples;
+        if (demand.light_adapts)
+            budget.light =
+                bright.known ? demand.more_light(bright.deviation * pass_share / shines) / plan_.pixel_samples
+                             : plan_.rays.light;
+        return budget;
     }
 
     void integrate(const LitSample& sample, const Blend& blend, Workspace& w, CacheCounts& counts) const {
         const StepTimer timer(counts, CacheStep::shade);
         w.integral.run(blend, sample.bsdf, sample.pixel->cache.gather.frame.n);
         w.has_matte = false;
-        if (plan_.rays.residual == 0) return;
-        w.integral.estimate_deviations();
-        w.distribution.build(w.integral);
+        if (plan_.rays.residual > 0 || estimates_noise()) w.integral.estimate_deviations();
+        if (plan_.rays.residual > 0) w.distribution.build(w.integral);
     }
 
     /// The integral of `first`, its diffuse part multiplied by `scale`. Where there are layers over it, that
@@ -250,36 +361,45 @@ class BlockCache final : public Integrator {
     }
 
     /// Adds a sample with all its light; what is to be filtered goes into `residual` instead.
-    void finish_sample(const LitSample& sample, Tile& sums, PixelResidual& residual, RayCounts& rays) const {
+    void finish_sample(const LitSample& sample, Tile& sums, PixelResidual& residual, DoubtSum& doubt,
+                       RayCounts& rays) const {
         const GBufferPixel& pixel = *sample.pixel;
         SplitRadiance radiance{pixel.emission, {}, {}};
+        Spectrum throughput;
+        SampledRadiance found;
         if (pixel.point) {
             SplitRadiance reflected = sample.reflected;
             if (!pixel.reflects_alone) reflected = monte_carlo_.reflected(*pixel.point, pixel.stream, rays);
-            reflected.direct +=
-                delta_light(transport_, pixel.point->vertex,
-                            pixel.stream.bits(Dim::opacity, 2 * pixel.point->path.depth + 1), rays);
+            reflected.direct += sample.delta;
             reflected.indirect +=
                 caustic_light(transport_, pixel.point->vertex, pixel.point->path.depth, max_depth_);
-            const Spectrum throughput = pixel.point->path.throughput;
-            if (!is_finite(sample.sampled.residual.direct + sample.sampled.residual.indirect
-                           + sample.sampled.bright)) {
-                ++rays.non_finite;  // and must not spread in the filter
-            } else if (plan_.filters) {
-                residual.bright += throughput * sample.sampled.bright;
-                residual.residual.direct += throughput * sample.sampled.residual.direct;
-                residual.residual.indirect += throughput * sample.sampled.residual.indirect;
-                residual.albedo += throughput * sample.albedo;
-            } else {
-                reflected.direct += sample.sampled.residual.direct + sample.sampled.bright;
-                reflected.indirect += sample.sampled.residual.indirect;
-            }
+            throughput = pixel.point->path.throughput;
+            found = finite_or_nothing(sample.sampled, rays);
             radiance.direct = throughput * reflected.direct;
             radiance.indirect = throughput * reflected.indirect;
+        }
+        if (estimates_noise())
+            doubt.add(found, throughput, radiance.total(), sample.albedo, sample.deviation);
+        if (plan_.filters) {
+            residual.bright += throughput * (found.bright + found.light.radiance);
+            residual.direct += throughput * found.residual.direct;
+            residual.indirect += throughput * found.residual.indirect;
+            residual.albedo += throughput * sample.albedo;
+        } else {
+            radiance.direct += throughput * (found.residual.direct + found.bright + found.light.radiance);
+            radiance.indirect += throughput * found.residual.indirect;
         }
         CacheFigures figures;
         figures.records = sample.maps;
         sums.add(sums.rect.x0, sums.rect.y0, pixel.stream.index, radiance, pixel.surface, figures);
+    }
+
+    /// What is not finite must not spread in the filter.
+    static SampledRadiance finite_or_nothing(const SampledRadiance& found, RayCounts& rays) {
+        if (is_finite(found.residual.direct + found.residual.indirect + found.bright + found.light.radiance))
+            return found;
+        ++rays.non_finite;
+        return {};
     }
 
     FilterGuide guide_of(const CellRow& row, int x, int y) const {
@@ -290,35 +410,55 @@ class BlockCache final : public Integrator {
         return {};
     }
 
-    /// Adds what rays have found, filtered: divided by what the surface reflects, smoothed, and multiplied
-    /// again.
-    void filter(const Preparation& p) {
-        const auto direct = [](const PixelResidual& r) { return r.residual.direct; };
-        const auto indirect = [](const PixelResidual& r) { return r.residual.indirect; };
-        const auto bright = [](const PixelResidual& r) { return r.bright; };
-        add_filtered(direct, filter_levels, &SplitRadiance::direct, p.threads);
-        if (source_.reflects()) add_filtered(indirect, filter_levels, &SplitRadiance::indirect, p.threads);
+    /// Adds what rays have found, filtered, and what pixels are expected to be wrong by.
+    void add_found(const Preparation& p) {
+        if (!estimates_noise()) return;
+        const FilterImage guides{region_.width(), region_.height(), guides_, {}};
+        add_kind(guides, &PixelDoubt::residual,
+                 {{&PixelResidual::direct, &SplitRadiance::direct},
+                  {&PixelResidual::indirect, &SplitRadiance::indirect}},
+                 p.threads);
         if (!split_.empty())
-            add_filtered(bright, plan_.filters_bright ? bright_filter_levels : 0, &SplitRadiance::direct,
-                         p.threads);
+            add_kind(guides, &PixelDoubt::bright, {{&PixelResidual::bright, &SplitRadiance::direct}},
+                     p.threads);
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            pixels_[i].error.variance += doubts_[i].samples_variance;
+            if (!plan_.exact) pixels_[i].error.deviation += deviation_left(doubts_[i]);
+        }
     }
 
-    template <typename Part>
-    void add_filtered(const Part& part, int levels, Spectrum SplitRadiance::*light, int threads) {
-        FilterImage image{region_.width(), region_.height(), guides_, {}};
-        image.values.reserve(residuals_.size());
-        for (const PixelResidual& r : residuals_) image.values.push_back(divided(part(r), r.albedo));
-        filter_along_surfaces(image, levels, threads);
+    struct Part {
+        Spectrum PixelResidual::*found;
+        Spectrum SplitRadiance::*light;
+    };
+
+    /// Parts of one kind: divided by what the surface reflects, smoothed, and multiplied again.
+    void add_kind(const FilterImage& guides, NoiseEstimate PixelDoubt::*kind, const std::vector<Part>& parts,
+                  int threads) {
+        std::vector<float> variances = noise_variances(guides, doubts_, kind, threads);
+        if (plan_.filters) {
+            FilterParts values(parts.size());
+            for (std::size_t k = 0; k < parts.size(); ++k)
+                for (const PixelResidual& r : residuals_)
+                    values[k].push_back(divided(r.*parts[k].found, r.albedo));
+            variances = smooth_noise(guides, values, variances, filter_levels, threads);
+            for (std::size_t k = 0; k < parts.size(); ++k) add_part(parts[k], values[k]);
+        }
+        for (std::size_t i = 0; i < pixels_.size(); ++i)
+            pixels_[i].error.variance += variances[i] * sqr(doubts_[i].albedo);
+    }
+
+    void add_part(const Part& part, const std::vector<Spectrum>& values) {
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const Spectrum sum = image.values[i] * residuals_[i].albedo;
+            const Spectrum sum = values[i] * residuals_[i].albedo;
             pixels_[i].radiance += sum;
-            pixels_[i].split.*light += sum;
+            pixels_[i].split.*part.light += sum;
         }
     }
 
     const Transport& transport_;
     const View& view_;
-    bool surface_layers_;
+    bool surface_layers_, predicts_;
     CachePlan plan_;
     std::uint32_t max_depth_;
     IncidentRadiance source_, map_source_;  // the truth, or what stands for it; what maps hold
@@ -332,6 +472,7 @@ class BlockCache final : public Integrator {
     std::vector<PixelSums> pixels_;
     std::vector<PixelResidual> residuals_;
     std::vector<FilterGuide> guides_;
+    std::vector<PixelDoubt> doubts_;
 };
 
 }  // namespace

@@ -5,10 +5,43 @@
 namespace relumine {
 namespace {
 
-/// With the shadow rays that a smaller error asks for, their noise is less than the filter's blur.
-constexpr float least_blurred_error = 0.01f;
+/// The standard deviation of one residual ray, against MapIntegral::deviation().
+constexpr float deviation_of_one = 0.75f;
+
+/// Light samples that are well spread: variance falls with this power of their number.
+constexpr float light_power = 1.3f;
+
+constexpr float most_rays = 4096;  // of a kind, per pixel
+
+/// The nearest power of two; 0 below ½ of `least`.
+float power_of_two(float rays, float least) {
+    if (!(rays >= least / 2)) return 0;
+    return std::exp2(std::round(std::log2(std::clamp(rays, least, most_rays))));
+}
+
+RayDemand ray_demand(const RenderSettings& s) {
+    constexpr float l1_of_sigma = 0.8f;  // of normal errors
+    RayDemand demand;
+    demand.residual_adapts = s.residual_rays < 0;
+    demand.light_adapts = s.light_samples < 0;
+    demand.sigma = s.error / l1_of_sigma;
+    const bool filters = s.filter_residual && !s.unbiased;
+    demand.residual_gain = filters ? 2.6f : 1.2f;
+    demand.light_gain = filters ? 1.0f : 0.5f;
+    demand.pilot = std::clamp(power_of_two(0.08f / s.error, 1), 2.0f, 16.0f);
+    return demand;
+}
 
 }  // namespace
+
+float RayDemand::residual_rays(float doubt) const {
+    return std::max(1.0f, power_of_two(sqr(deviation_of_one * doubt / (sigma * residual_gain)), 1));
+}
+
+float RayDemand::more_light(float noise) const {
+    const float wanted = pilot * std::pow(noise / (sigma * light_gain), 2 / light_power);
+    return power_of_two(wanted - pilot, pilot);
+}
 
 CachePlan cache_plan(const RenderSettings& s) {
     constexpr float usual_error = 0.02f, usual_tolerance = 0.2f, usual_residual = 8, usual_light = 16,
@@ -22,11 +55,12 @@ CachePlan cache_plan(const RenderSettings& s) {
     plan.blocks.tolerance = usual_tolerance / finer;
     plan.blocks.rays_per_pixel = usual_rays_per_pixel * std::max(finer, 1.0f);
     plan.rays = {chosen(s.residual_rays, usual_residual), chosen(s.light_samples, usual_light)};
+    plan.demand = ray_demand(s);
+    plan.pixel_samples = pixel_samples;
     plan.blocks.most_rays = usual_most_rays * std::max(finer, 1.0f);
     plan.reprojected = usual_reprojected;
     plan.exact = s.unbiased;
     plan.filters = s.filter_residual && !s.unbiased && plan.rays.residual + plan.rays.light > 0;
-    plan.filters_bright = plan.filters && s.error >= least_blurred_error;
     if (s.unbiased && plan.rays.residual == 0) plan.rays.residual = 1;
     return plan;
 }
@@ -37,8 +71,9 @@ CachePlan block_gather_plan(const RenderSettings& s) {
     plan.blocks.rays_per_pixel *= 2;  // of its own, since there are no others
     plan.blocks.most_rays = BlockSettings{}.most_rays;
     plan.rays.residual = 0;
+    plan.demand.residual_adapts = plan.demand.light_adapts = false;
     plan.reprojected = 0;
-    plan.exact = plan.filters = plan.filters_bright = false;
+    plan.exact = plan.filters = false;
     return plan;
 }
 

@@ -8,16 +8,31 @@
 
 namespace relumine {
 
-struct CachePlan {
-    BlockSettings blocks;
-    RayBudget rays;
-    std::size_t reprojected = 0;  // records around that a map is filled with, beside its own
-    bool exact = false, filters = false;
-    bool filters_bright = false;  // what light samples find, too
+/// How rays follow the expected error of a pixel; all counts are of all its samples together, powers of two.
+struct RayDemand {
+    bool residual_adapts = false, light_adapts = false;
+    float sigma = 0;          // of a pixel, relative: that is aimed at
+    float residual_gain = 1;  // how much better a pixel gets than its own residual rays make it
+    float light_gain = 1;     // the same of light samples
+    float pilot = 0;          // light samples before anything is known
+
+    /// For a pixel whose maps may be wrong by `doubt`, relative to what it shines: MapIntegral::deviation().
+    [[nodiscard]] float residual_rays(float doubt) const;
+    /// Beside the pilot's, for a pixel whose pilot has a relative standard deviation of `noise`.
+    [[nodiscard]] float more_light(float noise) const;
 };
 
-/// At an error of 2 %: blocks with a parallax error of a fifth, for each pixel 8 residual rays and 16 shadow
-/// rays; in proportion and against it. Set by hand on four scenes, not calibrated.
+struct CachePlan {
+    BlockSettings blocks;
+    RayBudget rays;  // what is usual, or what was asked for
+    RayDemand demand;
+    float pixel_samples = 1;
+    std::size_t reprojected = 0;  // records around that a map is filled with, beside its own
+    bool exact = false, filters = false;
+};
+
+/// At an error of 2 %: blocks with a parallax error of a fifth; in proportion. Rays as `demand` says, unless
+/// their number was given.
 [[nodiscard]] CachePlan cache_plan(const RenderSettings& settings);
 
 /// One map per block of 8 × 8 pixels and surface, and nothing else: what maps are worth without more.

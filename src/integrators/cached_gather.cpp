@@ -18,6 +18,23 @@ namespace {
 /// Pixels along each side of the tiles that keep caches of their own, in scope `tile`.
 constexpr int cache_tile_side = 64;
 
+/// Tiles of scope `tile` may be worked on at a time, each with its share of the memory. A number of threads
+/// would show in the picture.
+constexpr std::uint64_t tiles_at_a_time = 16;
+
+/// The records of a tile.
+struct OwnCache {
+    RadianceCache records;
+    std::uint64_t room = no_limit;  // bytes for more
+
+    void add(CacheEntry&& entry) {
+        const std::uint64_t bytes = entry.record.bytes();
+        if (bytes > room) return;
+        if (room != no_limit) room -= bytes;
+        records.add(std::move(entry));
+    }
+};
+
 /// What a thread needs at hand for a point; too large to make anew each time.
 struct Workspace {
     std::vector<FoundRecord> found;
@@ -49,12 +66,14 @@ class CachedGather final : public Integrator {
     }
     [[nodiscard]] std::uint32_t longest_pass() const override { return 1; }
 
-    [[nodiscard]] std::uint64_t known_bytes() const override {  // records are not: none is dropped
+    [[nodiscard]] std::uint64_t known_bytes() const override {  // records are not
         const PixelRect points = placement_region(view_, 0);
         return per_tile_ ? 0
                          : sizeof(GBufferPixel) * static_cast<std::uint64_t>(points.width())
                                * static_cast<std::uint64_t>(points.height());
     }
+
+    void keep_within(std::uint64_t bytes) override { room_ = per_tile_ ? bytes / tiles_at_a_time : bytes; }
 
     /// The records of sample 0.
     void recover(Preparation& p) override {
@@ -67,15 +86,16 @@ class CachedGather final : public Integrator {
         gbuffer_ = std::make_unique<GBuffer>(transport_, view_, placement_region(view_, p.first_sample),
                                              p.first_sample, max_depth_, surface_layers_, p.threads, p.rays);
         passing_ = RadianceCache(static_cast<std::uint32_t>(kept_.size()));
-        PlacementRun run{p.threads, p.stop, {}, {}};
+        const bool first = p.first_sample == 0;
+        PlacementRun run{p.threads, p.stop, {}, {}, first ? room_ : room_for_passing_};
         const auto point_at = [&](int x, int y) {
             const GBufferPixel& pixel = gbuffer_->at(x, y);
             return pixel.reflects_alone ? &pixel.cache : nullptr;
         };
         const RadianceCache none;
-        const bool first = p.first_sample == 0;
         place_records(source_, gbuffer_->region(), point_at, settings_, first ? none : kept_,
                       first ? kept_ : passing_, run);
+        if (first) room_for_passing_ = run.room;
         p.rays.add(run.rays);
         p.counts.add(run.counts);
     }
@@ -106,7 +126,7 @@ class CachedGather final : public Integrator {
         for (std::uint32_t sample = tile.first_sample; sample < tile.first_sample + tile.sample_count;
              ++sample) {
             const GBuffer points(transport_, view_, whole, sample, max_depth_, surface_layers_, 1, tile.rays);
-            RadianceCache own;
+            OwnCache own{RadianceCache{}, room_};
             for (int y = whole.y0; y < whole.y1; ++y)
                 for (int x = whole.x0; x < whole.x1; ++x) {
                     const GBufferPixel& pixel = points.at(x, y);
@@ -118,7 +138,7 @@ class CachedGather final : public Integrator {
     }
 
     /// `own`: the cache that the point may add to, or null.
-    SplitRadiance outgoing_radiance(const GBufferPixel& pixel, RadianceCache* own, Workspace& w,
+    SplitRadiance outgoing_radiance(const GBufferPixel& pixel, OwnCache* own, Workspace& w,
                                     CacheFigures& figures, Tile& tile) const {
         SplitRadiance sum{pixel.emission, {}, {}};
         if (!pixel.point) return sum;
@@ -139,7 +159,7 @@ class CachedGather final : public Integrator {
     }
 
     /// Outgoing radiance from records: lookup, reprojection, gaps, shading [V, §3.3].
-    SplitRadiance cached_radiance(const GBufferPixel& pixel, RadianceCache* own, Workspace& w,
+    SplitRadiance cached_radiance(const GBufferPixel& pixel, OwnCache* own, Workspace& w,
                                   CacheFigures& figures, Tile& tile) const {
         ++tile.cache.points;
         const Receiver receiver = reproject_to(pixel, own, w, tile);
@@ -163,14 +183,14 @@ class CachedGather final : public Integrator {
 
     /// Fills w.incident from the records that suit; makes one of its own where there is none and the point
     /// may.
-    Receiver reproject_to(const GBufferPixel& pixel, RadianceCache* own, Workspace& w, Tile& tile) const {
+    Receiver reproject_to(const GBufferPixel& pixel, OwnCache* own, Workspace& w, Tile& tile) const {
         const CachePoint& point = pixel.cache;
         Receiver receiver{point.gather.position, point.gather.frame};
         {
             const StepTimer timer(tile.cache, CacheStep::lookup);
             const Query query{receiver, point.x, point.y};
             const std::array<const RadianceCache*, 2> shared{&kept_, &passing_};
-            const RadianceCache* const tile_cache = own;
+            const RadianceCache* const tile_cache = own ? &own->records : nullptr;
             find_records(own ? std::span(&tile_cache, 1) : std::span<const RadianceCache* const>(shared),
                          query, settings_.reuse, w.found);
         }
@@ -206,6 +226,8 @@ class CachedGather final : public Integrator {
     RayShares rays_;                    // `reproject-mc` alone
     std::unique_ptr<GBuffer> gbuffer_;  // of the pass, scope `image` alone
     RadianceCache kept_, passing_;      // records of sample 0, and of the pass
+    std::uint64_t room_ = no_limit;     // bytes for the records of sample 0, or of each tile
+    std::uint64_t room_for_passing_ = no_limit;
 };
 
 }  // namespace

@@ -41,6 +41,8 @@ class CellRows {
     CellRows(const CellSource& source, const CachePlan& plan, const PixelRect& region)
         : source_(source), plan_(plan), region_(region) {}
 
+    /// Rows whose records are held at a time, and rows whose maps are.
+    static constexpr std::size_t most = 5, with_maps = 3;
     /// How many rows above its own, and below, a row needs to be lit.
     static constexpr int reach = 2;
 
@@ -55,7 +57,8 @@ class CellRows {
     void release();
 
   private:
-    static constexpr std::size_t lit = reach, most = 2 * reach + 1;
+    static constexpr std::size_t lit = reach;
+    static_assert(most == 2 * reach + 1);
 
     /// Maps that are not used at the moment, with their memory.
     class Store {

@@ -40,6 +40,9 @@ class Integrator {
     /// Bytes that it will hold beside the scene, as far as that is known before; what grows with what is
     /// found is not.
     [[nodiscard]] virtual std::uint64_t known_bytes() const { return 0; }
+    /// Called at most once, before anything is prepared: what grows beyond known_bytes() is to be kept within
+    /// so many bytes, whatever the number of threads. Methods that cannot are watched.
+    virtual void keep_within(std::uint64_t bytes) { (void)bytes; }
 
     /// Called once, instead of the passes before, where a render goes on from a later one: brings back what
     /// they have left for it.

@@ -29,9 +29,14 @@ namespace relumine {
                                                         const Transport& transport,
                                                         const std::function<bool()>& stop, RayCounts& rays);
 
-/// The field of a scene as the camera's full frame sees it. `stop` may be empty.
+/// Bytes without which no field is begun.
+[[nodiscard]] std::uint64_t least_field_bytes();
+
+/// The field of a scene as the camera's full frame sees it. Where it would take more than `most_bytes`, its
+/// cells are made larger until it does not. `stop` may be empty.
 [[nodiscard]] std::unique_ptr<RadianceField> make_field(const RenderSettings& settings,
                                                         const Transport& transport, const View& view,
-                                                        const std::function<bool()>& stop, RayCounts& rays);
+                                                        const std::function<bool()>& stop,
+                                                        std::uint64_t most_bytes, RayCounts& rays);
 
 }  // namespace relumine

@@ -11,8 +11,10 @@ struct LitSample {
     const GBufferPixel* pixel = nullptr;
     ReceiverBsdf bsdf;        // world space; only where the pixel reflects alone
     SplitRadiance reflected;  // of the maps' radiance
+    Spectrum delta;           // of lights without size
     SampledRadiance sampled;  // what residual and shadow rays add
     Spectrum albedo;          // directional
+    float deviation = 0;      // that the maps' light may be off by, luminance
     float maps = 0;           // that were blended
     bool done = false;        // has its integral
 };

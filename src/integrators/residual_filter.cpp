@@ -22,14 +22,19 @@ float likeness(const FilterGuide& a, const FilterGuide& b, float step) {
     return sharpened / (1 + sqr(sqr(off)));
 }
 
-Spectrum filtered(const FilterImage& image, int x, int y, int step) {
+/// The mean around a pixel and, over the same weights' squares, the variance of such a mean.
+struct Filtered {
+    Spectrum mean, variance;
+};
+
+Filtered filtered(const FilterImage& image, int x, int y, int step) {
     const auto at = [&](int i, int j) {
         return static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width)
                + static_cast<std::size_t>(i);
     };
     const FilterGuide& middle = image.guides[at(x, y)];
     if (middle.footprint <= 0) return {};
-    Spectrum sum;
+    Spectrum sum, squares;
     float weights = 0;
     for (int dy = -2; dy <= 2; ++dy)
         for (int dx = -2; dx <= 2; ++dx) {
@@ -41,23 +46,106 @@ Spectrum filtered(const FilterImage& image, int x, int y, int step) {
                                  * spline[static_cast<std::size_t>(std::abs(dy))]
                                  * likeness(middle, guide, static_cast<float>(step));
             sum += image.values[at(i, j)] * weight;
+            squares += image.values[at(i, j)] * (weight * weight);
             weights += weight;
         }
-    return sum / weights;
+    return {sum / weights, squares / (weights * weights)};
+}
+
+/// Replaces all values by use(level, filtered), level by level.
+template <typename Use>
+void filter(FilterImage& image, int first_level, int levels, int threads, const Use& use) {
+    std::vector<Spectrum> next(image.values.size());
+    for (int level = first_level; level < levels; ++level) {
+        parallel_for(threads, static_cast<std::size_t>(image.height), [&](std::size_t row) {
+            for (int x = 0; x < image.width; ++x)
+                next[row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)] =
+                    use(level, filtered(image, x, static_cast<int>(row), 1 << level));
+        });
+        std::swap(next, image.values);
+    }
+}
+
+// By level, of white noise on an open plane under B₃: Σw² of all levels together over that of those before,
+// over Σw² of the level alone; and the variance of the difference that the level makes over the variance that
+// it takes away.
+constexpr std::array<float, 4> correlation{1, 2.86f, 3.19f, 3.29f};
+constexpr std::array<float, 4> detail_share{0.86f, 0.68f, 0.63f, 0.62f};
+
+float at_level(const std::array<float, 4>& factors, int level) {
+    return factors[std::min(static_cast<std::size_t>(level), factors.size() - 1)];
+}
+
+Spectrum filtered_variance(int level, const Filtered& f) {
+    const float more = at_level(correlation, level);
+    const auto channel = [&](float mean, float variance) { return std::min(mean, more * variance); };
+    return {channel(f.mean.r, f.variance.r), channel(f.mean.g, f.variance.g),
+            channel(f.mean.b, f.variance.b)};
+}
+
+void filter_level(FilterImage& image, int level, int threads) {
+    filter(image, level, level + 1, threads, [](int, const Filtered& f) { return f.mean; });
 }
 
 }  // namespace
 
 void filter_along_surfaces(FilterImage& image, int levels, int threads) {
-    std::vector<Spectrum> next(image.values.size());
-    for (int level = 0; level < levels; ++level) {
-        parallel_for(threads, static_cast<std::size_t>(image.height), [&](std::size_t row) {
-            for (int x = 0; x < image.width; ++x)
-                next[row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)] =
-                    filtered(image, x, static_cast<int>(row), 1 << level);
-        });
-        std::swap(next, image.values);
+    for (int level = 0; level < levels; ++level) filter_level(image, level, threads);
+}
+
+namespace {
+
+/// The luminance of the parts together, squared, and averaged over a pixel's surroundings.
+FilterImage energy(const FilterImage& guides, const FilterParts& parts, int threads) {
+    FilterImage image{guides.width, guides.height, guides.guides, {}};
+    image.values.resize(guides.guides.size());
+    for (std::size_t i = 0; i < image.values.size(); ++i) {
+        Spectrum sum;
+        for (const auto& part : parts) sum += part[i];
+        image.values[i] = Spectrum{sqr(luminance(sum))};
     }
+    filter_along_surfaces(image, noise_levels, threads);
+    return image;
+}
+
+}  // namespace
+
+void filter_variances(FilterImage& variances, int levels, int threads) {
+    filter(variances, 0, levels, threads, filtered_variance);
+}
+
+std::vector<float> smooth_noise(const FilterImage& guides, FilterParts& parts,
+                                const std::vector<float>& variances, int levels, int threads) {
+    const std::size_t count = guides.guides.size();
+    FilterImage coarse{guides.width, guides.height, guides.guides, {}}, noise = coarse;
+    for (const float v : variances) noise.values.emplace_back(v);
+    FilterParts kept(parts.size(), std::vector<Spectrum>(count));
+    std::vector<float> error(count);
+    for (int level = 0; level < levels; ++level) {
+        FilterParts details(parts.size());
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            coarse.values = parts[k];
+            filter_level(coarse, level, threads);
+            details[k].resize(count);
+            for (std::size_t i = 0; i < count; ++i) details[k][i] = parts[k][i] - coarse.values[i];
+            parts[k] = coarse.values;
+        }
+        const FilterImage seen = energy(guides, details, threads);
+        const std::vector<Spectrum> before = noise.values;
+        filter(noise, level, level + 1, threads, filtered_variance);
+        for (std::size_t i = 0; i < count; ++i) {
+            const float expected =
+                at_level(detail_share, level) * std::max(0.0f, before[i].r - noise.values[i].r);
+            const float share = seen.values[i].r > expected ? 1 - expected / seen.values[i].r : 0;
+            for (std::size_t k = 0; k < parts.size(); ++k) kept[k][i] += details[k][i] * share;
+            error[i] += expected * share;
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < parts.size(); ++k) parts[k][i] += kept[k][i];
+        error[i] += noise.values[i].r;
+    }
+    return error;
 }
 
 }  // namespace relumine

@@ -29,4 +29,25 @@ constexpr int filter_reach(int levels) { return 2 * ((1 << levels) - 1); }
 /// away.
 void filter_along_surfaces(FilterImage& image, int levels, int threads);
 
+/// Turns the variances of values that are independent from pixel to pixel into those after
+/// filter_along_surfaces. From the second level on values are no longer independent: how much more remains
+/// than if they were is taken from an open plane.
+void filter_variances(FilterImage& variances, int levels, int threads);
+
+/// The parts of noisy values that are to be smoothed alike.
+using FilterParts = std::vector<std::vector<Spectrum>>;
+
+/// Smooths what may be noise and keeps what is more: level by level, a pixel's difference to its surroundings
+/// stays by the share of it, over the pixels around, that noise does not explain (Wiener's filter on the
+/// wavelet's details). `variances`: by pixel, of the luminance of the parts together. Returns the error that
+/// is left, likewise: noise, and details taken for it.
+[[nodiscard]] std::vector<float> smooth_noise(const FilterImage& guides, FilterParts& parts,
+                                              const std::vector<float>& variances, int levels, int threads);
+
+/// Levels of the filter over which squares of noise are averaged: fewer values scatter too much themselves.
+inline constexpr int noise_levels = 2;
+
+/// How far away the pixels are that smooth_noise takes into account.
+constexpr int smoothing_reach(int levels) { return filter_reach(levels) + filter_reach(noise_levels); }
+
 }  // namespace relumine

@@ -7,7 +7,8 @@
 // lights, and towards surfaces that reflect as much as lights: BrightCones). f, f_bright: dim and bright
 // radiance times BSDF; h, H: the integrand in the maps and its integral; w: the power heuristic [Veach97,
 // §9.2.4] between light samples and those residual rays that were drawn from the BSDF: the others know
-// nothing of bright light.
+// nothing of bright light. n and m differ from pixel to pixel; weights take the usual numbers instead, so
+// that light samples can come before the rest, whose number they help to choose.
 #include "integrators/residual_rays.hpp"
 
 #include "base/hash.hpp"
@@ -21,7 +22,7 @@ namespace {
 constexpr float usual_bsdf_share = 0.15f;
 
 constexpr std::uint64_t residual_purpose = 0x7265736964, light_purpose = 0x6272696768,
-                        cone_purpose = 0x636f6e65;
+                        second_light_purpose = 0x6c69676874, cone_purpose = 0x636f6e65;
 
 float bsdf_share(const ResidualDistribution& distribution) {
     return distribution.empty() ? 1 : usual_bsdf_share;
@@ -41,6 +42,8 @@ RayRange ray_range(float rays, const SampleStream& sample, std::uint64_t purpose
     return {before(sample.index), before(sample.index + 1), before(std::max(sample.count, 1u)) + 1};
 }
 
+bool in_second_half(const SampleStream& stream) { return 2 * stream.index + 1 >= stream.count; }
+
 BsdfValue value_towards(const Vertex& vertex, WorldDir direction) {
     const LocalDir w_in = vertex.point.frame.to_local(direction);
     if (!(cos_theta(w_in) > 0)) return {};
@@ -49,13 +52,34 @@ BsdfValue value_towards(const Vertex& vertex, WorldDir direction) {
     return sides_agree(vertex.point, direction) ? bsdf : BsdfValue{{}, bsdf.pdf};
 }
 
+template <typename Use>
+void for_each_ray(float rays, const SampleStream& stream, std::uint64_t purpose, RayNoise& noise,
+                  const Use& use) {
+    const RayRange range = ray_range(rays, stream, purpose);
+    noise.rays += static_cast<float>(range.last - range.first);
+    for (std::uint32_t i = range.first; i < range.last; ++i)
+        use(SampleStream{hash(stream.key, purpose), i, range.all, stream.set});
+}
+
 }  // namespace
 
+void FoundLight::join(const FoundLight& other) {
+    const float all = rays + other.rays;
+    if (!(all > 0)) return;
+    radiance = radiance * (rays / all) + other.radiance * (other.rays / all);
+    RayNoise sum;
+    sum.add(noise, rays / all);
+    sum.add(other.noise, other.rays / all);
+    sum.rays = noise.rays + other.noise.rays;
+    noise = sum;
+    rays = all;
+}
+
 /// The bright surfaces as the point sees them, and how light samples are divided between them and the lights.
-void ResidualEstimator::see_cones(const IntegratedPoint& point) {
-    const SurfacePoint& p = point.x.vertex.point;
+void ResidualEstimator::see_cones(const ShadingPoint& x) {
+    const SurfacePoint& p = x.vertex.point;
     cones_.count = 0;
-    if (!settings_.split.cones().empty() && settings_.source.max_depth > point.x.path.depth + 1)
+    if (!settings_.split.cones().empty() && settings_.source.max_depth > x.path.depth + 1)
         cones_ = settings_.split.cones().seen_from(p.position, p.geometric_normal);
     const bool lights = !settings_.split.empty(), cones = cones_.count > 0;
     light_budget_ = settings_.budget.light * (!lights ? 0.0f : cones ? 0.5f : 1.0f);
@@ -64,20 +88,23 @@ void ResidualEstimator::see_cones(const IntegratedPoint& point) {
 }
 
 void ResidualEstimator::add(const IntegratedPoint& point, SampledRadiance& sum) {
-    const auto each = [&](float rays, std::uint64_t purpose, const auto& use) {
-        const RayRange range = ray_range(rays, point.stream, purpose);
-        for (std::uint32_t i = range.first; i < range.last; ++i)
-            use(SampleStream{hash(point.stream.key, purpose), i, range.all, point.stream.set});
-    };
-    see_cones(point);
-    if (settings_.budget.residual > 0)
-        each(settings_.budget.residual, residual_purpose,
-             [&](const SampleStream& stream) { add_residual(point, stream, sum); });
-    if (light_budget_ > 0)
-        each(light_budget_, light_purpose,
-             [&](const SampleStream& stream) { add_light(point, stream, sum); });
+    see_cones(point.x);
+    if (point.rays > 0)
+        for_each_ray(point.rays, point.stream, residual_purpose, sum.residual_noise,
+                     [&](const SampleStream& stream) { add_residual(point, stream, sum); });
     if (cone_budget_ > 0)
-        each(cone_budget_, cone_purpose, [&](const SampleStream& stream) { add_cone(point, stream, sum); });
+        for_each_ray(cone_budget_, point.stream, cone_purpose, sum.cone_noise,
+                     [&](const SampleStream& stream) { add_cone(point, stream, sum); });
+    sum.hit_noise.rays = sum.residual_noise.rays;
+}
+
+void ResidualEstimator::add_light(const ShadingPoint& x, const SampleStream& stream, float rays,
+                                  LightSeries series, FoundLight& sum) {
+    see_cones(x);
+    if (!(light_budget_ > 0) || !(rays > 0)) return;
+    sum.rays = rays * light_budget_ / settings_.budget.light;
+    for_each_ray(sum.rays, stream, series == LightSeries::first ? light_purpose : second_light_purpose,
+                 sum.noise, [&](const SampleStream& drawn) { add_light_sample(x, drawn, sum.rays, sum); });
 }
 
 void ResidualEstimator::finish() {
@@ -85,6 +112,8 @@ void ResidualEstimator::finish() {
     trace_light();
     trace_cones();
 }
+
+float ResidualEstimator::usual_bsdf_rays() const { return usual_bsdf_share * settings_.budget.residual; }
 
 /// A direction from the deviations or from the BSDF.
 std::optional<ResidualEstimator::Drawn> ResidualEstimator::draw(const IntegratedPoint& point,
@@ -112,7 +141,7 @@ void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleS
     const std::optional<Drawn> drawn = draw(point, stream);
     if (!drawn) return;
     const BsdfValue bsdf = value_towards(vertex, drawn->direction);
-    const float share = bsdf_share(point.distribution), rays = settings_.budget.residual;
+    const float share = bsdf_share(point.distribution), rays = point.rays;
     const float guided = point.distribution.empty() ? 0 : point.distribution.pdf(drawn->texel);
     const float density = rays * ((1 - share) * guided + share * bsdf.pdf);
     if (!(density > 0)) return;
@@ -121,11 +150,13 @@ void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleS
     const std::size_t lane = residual_count_++;
     residual_[lane] = {
         &sum,
+        in_second_half(stream),
         drawn->texel,
         bsdf.value,
         {h * held.direct, h * held.indirect},
         density,
         drawn->from_bsdf ? rays * share * bsdf.pdf : 0,
+        usual_bsdf_rays() * bsdf.pdf,
         drawn->from_bsdf && cone_budget_ > 0 ? cone_budget_ * pdf(cones_, drawn->direction) : 0,
         light_budget_};
     residual_streams_[lane] = stream;
@@ -165,33 +196,40 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
     const bool true_dim = hit || settings_.exact || ray.t_max < 0;
     const Spectrum dim =
         true_dim ? found.direct * (1 - bright.share) : settings_.environment.texels[drawn.texel] * colour;
-    SampledRadiance& sum = *drawn.sum;
-    sum.residual.direct += (drawn.bsdf * dim - drawn.held.direct) / drawn.density;
+    MapRadiance residual;
+    residual.direct = (drawn.bsdf * dim - drawn.held.direct) / drawn.density;
     const bool brightly = hit && !is_black(found.indirect) && settings_.split.reflects_brightly(ray, hit);
     const Spectrum dim_indirect = brightly ? Spectrum{} : found.indirect;
-    sum.residual.indirect += (drawn.bsdf * dim_indirect - drawn.held.indirect) / drawn.density;
+    residual.indirect = (drawn.bsdf * dim_indirect - drawn.held.indirect) / drawn.density;
     if (brightly && drawn.bsdf_density > 0)
-        sum.residual.indirect += drawn.bsdf * found.indirect
-                                 * (mis_weight(drawn.bsdf_density, drawn.cone_density) / drawn.bsdf_density);
-    if (bright.share > 0 && drawn.bsdf_density > 0)
-        sum.bright += drawn.bsdf * found.direct
-                      * (bright.share * mis_weight(drawn.bsdf_density, drawn.light_budget * bright.pdf)
-                         / drawn.bsdf_density);
+        residual.indirect +=
+            drawn.bsdf * found.indirect
+            * (mis_weight(drawn.usual_bsdf_density, drawn.cone_density) / drawn.bsdf_density);
+    SampledRadiance& sum = *drawn.sum;
+    sum.residual.direct += residual.direct;
+    sum.residual.indirect += residual.indirect;
+    sum.residual_noise.count(drawn.second_half, luminance(residual.direct + residual.indirect));
+    if (!(bright.share > 0 && drawn.bsdf_density > 0)) return;
+    const Spectrum shining =
+        drawn.bsdf * found.direct
+        * (bright.share * mis_weight(drawn.usual_bsdf_density, drawn.light_budget * bright.pdf)
+           / drawn.bsdf_density);
+    sum.bright += shining;
+    sum.hit_noise.count(drawn.second_half, luminance(shining));
 }
 
-void ResidualEstimator::add_light(const IntegratedPoint& point, const SampleStream& stream,
-                                  SampledRadiance& sum) {
-    const Vertex& vertex = point.x.vertex;
-    const std::uint32_t depth = point.x.path.depth;
+void ResidualEstimator::add_light_sample(const ShadingPoint& x, const SampleStream& stream, float rays,
+                                         FoundLight& sum) {
+    const Vertex& vertex = x.vertex;
+    const std::uint32_t depth = x.path.depth;
     const auto light =
         settings_.split.lights().sample(vertex.point.position, stream.next2(Dim::light_point, depth));
     if (!light || !(light->pdf > 0)) return;
     const BsdfValue bsdf = value_towards(vertex, light->w_in);
     const Spectrum radiance = bsdf.value * light->radiance * settings_.split.share(*light);
     if (is_black(radiance)) return;
-    const float density = light_budget_ * light->pdf;
-    const float bsdf_density = settings_.budget.residual * bsdf_share(point.distribution) * bsdf.pdf;
-    light_[light_count_] = {&sum, radiance * (mis_weight(density, bsdf_density) / density)};
+    const float weight = mis_weight(light_budget_ * light->pdf, usual_bsdf_rays() * bsdf.pdf);
+    light_[light_count_] = {&sum, in_second_half(stream), radiance * (weight / (rays * light->pdf))};
     light_rays_[light_count_++] = shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1));
     if (light_count_ == packet_size) trace_light();
 }
@@ -202,8 +240,11 @@ void ResidualEstimator::trace_light() {
     std::array<Spectrum, packet_size> passed;
     counts_.add(RayPurpose::shadow, light_count_);
     settings_.source.transport.tracer.passed_light(light_rays_, passed);
-    for (std::size_t lane = 0; lane < light_count_; ++lane)
-        light_[lane].sum->bright += light_[lane].reflected * passed[lane];
+    for (std::size_t lane = 0; lane < light_count_; ++lane) {
+        const Spectrum found = light_[lane].reflected * passed[lane];
+        light_[lane].sum->radiance += found;
+        light_[lane].sum->noise.count(light_[lane].second_half, luminance(found));
+    }
     light_count_ = 0;
 }
 
@@ -217,8 +258,9 @@ void ResidualEstimator::add_cone(const IntegratedPoint& point, const SampleStrea
     if (cone_count_ > 0 && depth != cone_depth_) trace_cones();
     cone_depth_ = depth;
     const float density = cone_budget_ * drawn.pdf;
-    const float bsdf_density = settings_.budget.residual * bsdf_share(point.distribution) * bsdf.pdf;
-    cone_[cone_count_] = {&sum, bsdf.value * (mis_weight(density, bsdf_density) / density)};
+    const float bsdf_density = usual_bsdf_rays() * bsdf.pdf;
+    cone_[cone_count_] = {&sum, in_second_half(stream),
+                          bsdf.value * (mis_weight(density, bsdf_density) / density)};
     cone_streams_[cone_count_] = stream;
     cone_rays_[cone_count_++] = {ray_origin(vertex.point, drawn.direction), drawn.direction, infinity,
                                  stream.bits(Dim::opacity, 2 * depth + 2)};
@@ -236,9 +278,12 @@ void ResidualEstimator::trace_cones() {
             cone_rays_[lane].t_max = -1;
     const RadiancePacket found =
         incident_radiance(settings_.source, cone_rays_, hits, cone_depth_ + 1, cone_streams_, counts_);
-    for (std::size_t lane = 0; lane < cone_count_; ++lane)
-        if (cone_rays_[lane].t_max >= 0)
-            cone_[lane].sum->residual.indirect += cone_[lane].weight * found[lane].indirect;
+    for (std::size_t lane = 0; lane < cone_count_; ++lane) {
+        if (cone_rays_[lane].t_max < 0) continue;
+        const Spectrum reflected = cone_[lane].weight * found[lane].indirect;
+        cone_[lane].sum->residual.indirect += reflected;
+        cone_[lane].sum->cone_noise.count(cone_[lane].second_half, luminance(reflected));
+    }
     cone_count_ = 0;
 }
 

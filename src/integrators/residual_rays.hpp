@@ -4,6 +4,7 @@
 
 #include "blocks/bright_split.hpp"
 #include "blocks/residual_distribution.hpp"
+#include "integrators/ray_noise.hpp"
 #include "integrators/shading_point.hpp"
 #include "radiance/incident.hpp"
 
@@ -14,10 +15,24 @@ struct RayBudget {
     float residual = 0, light = 0;
 };
 
+/// What a series of light samples has found.
+struct FoundLight {
+    Spectrum radiance;  // reflected
+    RayNoise noise;
+    float rays = 0;  // that the camera sample got on average
+
+    /// Makes one of two series, weighed by their rays, which must not depend on what they have found.
+    void join(const FoundLight& other);
+};
+/// Successive series of a point draw other samples.
+enum class LightSeries : std::uint8_t { first, second };
+
 /// What is added to MapIntegral::reflected().
 struct SampledRadiance {
-    MapRadiance residual;  // true dim radiance less what the maps hold
-    Spectrum bright;
+    MapRadiance residual;                            // true dim radiance less what the maps hold
+    Spectrum bright;                                 // that residual rays have met
+    FoundLight light;                                // the rest of it
+    RayNoise residual_noise, cone_noise, hit_noise;  // of `residual`, by kind of ray; of `bright`
 };
 
 /// What residual rays are drawn and judged with.
@@ -25,7 +40,7 @@ struct ResidualSettings {
     const IncidentRadiance& source;
     const BrightSplit& split;
     const DimEnvironment& environment;
-    RayBudget budget;
+    RayBudget budget;  // what is usual: it divides bright light between light samples and other rays
     bool exact;  // integrals are; if not, rays that miss bring back the environment's mean over their texel,
                  // because the maps hold the same: only what is seen is estimated, not the environment's
                  // detail
@@ -38,6 +53,7 @@ struct IntegratedPoint {
     const MapIntegral& integral;
     const ResidualDistribution& distribution;  // of `integral`
     Spectrum scale;                            // the point's integral is so many times `integral`
+    float rays;                                // residual rays that it gets on average
 };
 
 /// Estimates the difference between the light that points reflect and their map integrals. With residual rays
@@ -48,27 +64,35 @@ class ResidualEstimator {
     ResidualEstimator(const ResidualSettings& settings, RayCounts& counts)
         : settings_(settings), counts_(counts) {}
 
-    /// Draws the rays of a point; `sum` has all that they find after finish().
+    /// Draws residual rays of a point and rays towards bright surfaces; `sum` has all that they find after
+    /// finish().
     void add(const IntegratedPoint& point, SampledRadiance& sum);
+    /// The same of a point's light samples: `rays` on average.
+    void add_light(const ShadingPoint& x, const SampleStream& stream, float rays, LightSeries series,
+                   FoundLight& sum);
     void finish();
 
   private:
     struct ResidualRay {
         SampledRadiance* sum = nullptr;
+        bool second_half = false;  // of its sequence
         std::uint32_t texel = 0;
-        Spectrum bsdf;           // f·|cos θ|; black where the surface is in the way
-        MapRadiance held;        // the integrand in the maps
-        float density = 0;       // of residual rays, times how many there are
-        float bsdf_density = 0;  // of those drawn from the BSDF, likewise; 0 if this is none of them
-        float cone_density = 0;  // of rays towards bright surfaces
-        float light_budget = 0;  // rays of the point towards lights
+        Spectrum bsdf;                 // f·|cos θ|; black where the surface is in the way
+        MapRadiance held;              // the integrand in the maps
+        float density = 0;             // of residual rays, times how many there are
+        float bsdf_density = 0;        // of those drawn from the BSDF, likewise; 0 if this is none of them
+        float usual_bsdf_density = 0;  // likewise, of as many as are usual: against the two below
+        float cone_density = 0;        // of rays towards bright surfaces
+        float light_budget = 0;        // usual rays of the point towards lights
     };
     struct LightRay {
-        SampledRadiance* sum = nullptr;
+        FoundLight* sum = nullptr;
+        bool second_half = false;
         Spectrum reflected;  // where nothing is in the way
     };
     struct ConeRay {
         SampledRadiance* sum = nullptr;
+        bool second_half = false;
         Spectrum weight;  // of the radiance that bright surfaces reflect
     };
     struct Drawn {
@@ -78,10 +102,12 @@ class ResidualEstimator {
     };
 
     void add_residual(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
-    void add_light(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
+    void add_light_sample(const ShadingPoint& x, const SampleStream& stream, float rays, FoundLight& sum);
     void add_cone(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
-    void see_cones(const IntegratedPoint& point);
+    void see_cones(const ShadingPoint& x);
     [[nodiscard]] static std::optional<Drawn> draw(const IntegratedPoint& point, const SampleStream& stream);
+    /// For weights between strategies: a fixed share, or light samples that come before would need the maps.
+    [[nodiscard]] float usual_bsdf_rays() const;
     void trace_residual();
     void collect(const ResidualRay& drawn, const Ray& ray, const Hit& hit, const SplitRadiance& found) const;
     void trace_light();

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the spread of rays and the maps' own doubt to the error of pixels.
+#include "integrators/error_prediction.hpp"
+
+namespace relumine {
+namespace {
+
+/// What n rays may miss altogether is a deviation of so much of MapIntegral::deviation() over √n.
+constexpr float unseen = 0.3f;
+
+constexpr float least_albedo = 1e-5f;  // that anything is divided by
+
+/// Samples are spread well over the pixel: of an edge through it, only those near the edge are in doubt.
+float variance_of_samples(float count, float sum, float squares) {
+    if (count < 2) return 0;
+    const float spread = std::max(0.0f, squares - sum * sum / count) / (count - 1);
+    return spread * std::sqrt(count);
+}
+
+}  // namespace
+
+void DoubtSum::add(const SampledRadiance& found, Spectrum throughput, Spectrum light, Spectrum albedo,
+                   float deviation) {
+    const float factor = luminance(throughput), l = luminance(light);
+    residual_.add(found.residual_noise, factor);
+    cone_.add(found.cone_noise, factor);
+    light_.add(found.light.noise, factor);
+    hit_.add(found.hit_noise, factor);
+    albedo_ += luminance(throughput * albedo);
+    deviation_ += factor * deviation;
+    samples_ += 1;
+    sum_ += l;
+    squares_ += l * l;
+}
+
+PixelDoubt DoubtSum::finish() const {
+    PixelDoubt doubt{noise_of(residual_), noise_of(light_), albedo_, deviation_,
+                     variance_of_samples(samples_, sum_, squares_)};
+    doubt.residual.add(noise_of(cone_));
+    doubt.residual.independent += sqr(unseen * deviation_) / std::max(residual_.rays, 1.0f);
+    doubt.bright.add(noise_of(hit_));
+    return doubt;
+}
+
+float deviation_left(const PixelDoubt& doubt) {
+    constexpr float alone = 0.2f;                     // [sim]
+    constexpr float of_one_ray = 0.1f, power = 0.3f;  // differences that the filter takes for noise
+    if (doubt.residual.rays < 1) return alone * doubt.deviation;
+    return std::min(alone, of_one_ray * std::pow(doubt.residual.rays, -power)) * doubt.deviation;
+}
+
+std::vector<float> noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,
+                                   NoiseEstimate PixelDoubt::*kind, int threads) {
+    FilterImage image{guides.width, guides.height, guides.guides, {}};
+    image.values.reserve(doubts.size());
+    for (const PixelDoubt& d : doubts) {
+        const float scale = d.albedo > least_albedo ? 1 / sqr(d.albedo) : 0;
+        const NoiseEstimate& noise = d.*kind;
+        image.values.push_back({noise.independent * scale, noise.halves * scale, noise.rays});
+    }
+    filter_along_surfaces(image, noise_levels, threads);
+    std::vector<float> variances;
+    variances.reserve(doubts.size());
+    for (const Spectrum& v : image.values) variances.push_back(variance_of_sum({v.r, v.g, v.b}));
+    return variances;
+}
+
+}  // namespace relumine
