@@ -195,6 +195,27 @@ TEST(ResidualFilter, RemovesWhatIsSaidToBeNoise) {
     EXPECT_LT(flat.predicted, 2 * flat.off);  // what stays by chance might have been more than noise
 }
 
+/// A pixel in forty has found what forty shine, and knows it, as pixels do: by its squares, averaged over its
+/// surroundings. What is dark around it must not stay dark on account of it.
+TEST(ResidualFilter, RareFindsKeepTheirEnergy) {
+    const auto found = [](int x, int y) { return hash(at(x, y), 3) % 40 == 0 ? Spectrum{40} : Spectrum{}; };
+    const FilterImage guides = floor_with(found);
+    FilterImage squares = floor_with([&](int x, int y) { return found(x, y) * found(x, y); });
+    filter_along_surfaces(squares, noise_levels, 1);
+    std::vector<float> variances;
+    for (const Spectrum& v : squares.values) variances.push_back(v.r);
+    const auto mean = [](const std::vector<Spectrum>& values) {
+        double sum = 0;
+        for (const Spectrum& v : values) sum += v.r;
+        return sum / static_cast<double>(values.size());
+    };
+    FilterImage plain = guides;
+    filter_along_surfaces(plain, levels, 1);  // keeps it all, but at the picture's border
+    FilterParts parts{guides.values};
+    static_cast<void>(smooth_noise(guides, parts, variances, levels, 1));
+    EXPECT_NEAR(mean(parts[0]) / mean(plain.values), 1, 0.015);  // .890 where v − v′ is what noise explains
+}
+
 TEST(ResidualFilter, KeepsWhatNoiseDoesNotExplain) {
     const Smoothed fine = smoothed(4, true);
     EXPECT_GT(fine.on_stripe, 3);  // the plain filter leaves a fifth of it
