@@ -39,12 +39,12 @@ float variance_of_mean(float sum, float sum_of_squares, float n) {
                               / (static_cast<double>(n) - 1));
 }
 
-}  // namespace
-
 /// One sigma over the value itself; the number of samples cancels out. 0 where nothing is known or all black.
 float relative_error(float sum, float variance, float deviation) {
     return sum > 0 ? std::sqrt(std::max(0.0f, variance) + deviation * deviation) / sum : 0;
 }
+
+}  // namespace
 
 /// A layer: its channels and what of a pixel's sums goes into them.
 struct Film::LayerSpec {
