@@ -20,12 +20,6 @@ struct Landing {
     std::uint16_t ray = 0;
 };
 
-/// A ray that has met nothing but the sky.
-struct Sight {
-    Vec3 direction;        // as of a landing
-    float irradiance = 0;  // luminance, W·m⁻²
-};
-
 /// What an element's rays have found.
 struct ElementView {
     std::vector<Landing> landings;  // in order of rays

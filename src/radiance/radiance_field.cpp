@@ -8,7 +8,6 @@
 
 #include "base/executor.hpp"
 #include "radiance/caustic_map.hpp"
-#include "radiance/field_links.hpp"
 #include "radiance/field_trace.hpp"
 
 namespace relumine {
@@ -17,8 +16,6 @@ namespace {
 constexpr std::uint32_t seed_rays = 64;   // that a seed traces each time
 constexpr std::uint32_t seed_rounds = 4;  // later ones find what cells were divided into
 constexpr std::size_t generation = 1024;  // elements whose rays are traced before their links are made
-
-constexpr float most_sky_share = 0.5f;  // of samples of the lights: the rest goes where no ray has been
 
 constexpr double most_by_chance = 2;        // a ray's find along lobes, over the mean light of elements
 constexpr float most_found_by_chance = 64;  // a gather ray's, over their mean radiance
@@ -83,7 +80,10 @@ class FieldBuilder {
             figures.iterations = reflect();
         }
         add_links_to_vectors();
-        if (settings_.arrivals) arrivals = make_arrivals();
+        if (settings_.arrivals) {
+            straight_.resize(cells.elements().size());
+            arrivals = make_arrivals(cells, links_, irradiance_, share(), straight_, settings_.threads);
+        }
         figures.elements = cells.elements().size();
         figures.links = links_.links.size();
         figures.unresolved = static_cast<double>(unresolved_)
@@ -210,25 +210,16 @@ class FieldBuilder {
         FieldElement& element = cells_->elements()[traced_];
         element.irradiance = view.light;
         strongest_.push_back(view.strongest);
-        if (settings_.arrivals) keep_sky(view.sky);
         finds_.insert(finds_.end(), view.finds.begin(), view.finds.end());
         const float light = luminance(view.light.towards(element.normal));
         light_ += light;
-        lights_.push_back(light);
+        if (settings_.arrivals) straight_.add(element.normal, light, view.sky);
         const int coarse = cells_->scale().coarsest_level(element.position);
         const bool divisible = !element.coarse && element.level < coarse + cells_->scale().finest;
         const bool edge = view.contrast > settings_.edge_above * std::max(mean_light, double{light});
         element.divided = divisible && (edge || element.size > settings_.divide_above * view.distance);
         ++traced_;
         return edge && (divisible || element.coarse);
-    }
-
-    void keep_sky(const std::vector<Sight>& sky) {
-        const std::size_t first = sky_.size();
-        sky_.resize(first + ArrivalMap::cells);
-        const Frame frame = frame_around(cells_->elements()[traced_].normal);
-        for (const Sight& s : sky)
-            sky_[first + ArrivalMap::cell_of(frame.to_local({s.direction}))] += s.irradiance;
     }
 
     /// What one find along lobes in a hundred exceeds. Where bright finds are common, as of a bulb in a ball
@@ -366,46 +357,6 @@ class FieldBuilder {
         });
     }
 
-    /// Where light comes from, of each element and those around it in its plane: the rays of one are few.
-    std::vector<ElementArrivals> make_arrivals() {
-        const std::vector<FieldElement>& elements = cells_->elements();
-        std::vector<float> links(elements.size()
-                                 * ArrivalMap::cells);  // W·m⁻², by element and cell of its map
-        sky_.resize(links.size());                      // a stopped build
-        lights_.resize(elements.size());
-        in_parallel(elements.size(), [&](std::size_t i, RayCounts&) {
-            for (const Link& l : links_.of(i))
-                links[i * ArrivalMap::cells + ArrivalMap::cell_of(unpack_direction(l.direction))] +=
-                    std::max(0.0f, luminance(l.value() * irradiance_[l.to]) * share());
-        });
-        std::vector<ElementArrivals> arrivals(elements.size());
-        in_parallel(elements.size(), [&](std::size_t i, RayCounts&) {
-            std::array<float, ArrivalMap::cells> surfaces{}, sky{};
-            float light = 0, sky_light = 0;
-            cells_->around(elements[i].position, elements[i].level, [&](ElementId other) {
-                if (!in_one_plane(elements[i], elements[other])) return;
-                for (std::size_t c = 0; c < ArrivalMap::cells; ++c) {
-                    surfaces[c] += links[other * ArrivalMap::cells + c];
-                    sky[c] += sky_[other * ArrivalMap::cells + c];
-                    sky_light += sky_[other * ArrivalMap::cells + c];
-                }
-                light += lights_[other];
-            });
-            arrivals[i] = {ArrivalMap(surfaces), ArrivalMap(sky), 0};
-            if (sky_light > 0)
-                arrivals[i].sky_share = std::min(sky_light / std::max(light, sky_light), most_sky_share);
-        });
-        return arrivals;
-    }
-
-    /// Whether their maps may be added: frames flip where normals pass through the equator.
-    static bool in_one_plane(const FieldElement& a, const FieldElement& b) {
-        const Frame f = frame_around(a.normal), g = frame_around(b.normal);
-        constexpr float least_cosine = 0.99f;
-        return dot(f.s, g.s) > least_cosine && dot(f.n, g.n) > least_cosine
-               && std::abs(dot(b.position - a.position, a.normal)) < 0.5f * a.size;
-    }
-
     const Transport& t_;
     std::span<const FieldSeed> seeds_;
     const FieldSettings& settings_;
@@ -417,9 +368,8 @@ class FieldBuilder {
     std::vector<Spectrum> irradiance_;
     std::size_t traced_ = 0, unresolved_ = 0;
     std::vector<IrradianceVector> strongest_;  // by traced element
-    std::vector<float> sky_;  // W·m⁻², by element and cell of its map: straight from infinity
-    std::vector<float> lights_;
-    std::vector<float> finds_;  // of all rays, along lobes
+    StraightLight straight_;                   // likewise, if arrivals are wanted
+    std::vector<float> finds_;                 // of all rays, along lobes
     float common_find_ = infinity;
     double light_ = 0;               // of traced elements: sum of irradiance straight from lights
     PointReservoirs met_;            // where rays from the seeds have met elements

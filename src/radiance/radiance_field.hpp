@@ -12,8 +12,8 @@
 #include <optional>
 #include <span>
 
-#include "radiance/arrival_map.hpp"
 #include "radiance/bright_cones.hpp"
+#include "radiance/field_arrivals.hpp"
 #include "radiance/field_neighbors.hpp"
 #include "radiance/path_guide.hpp"
 
@@ -49,12 +49,6 @@ struct FieldFigures {
     std::size_t bytes = 0;  // while it is used
     std::size_t iterations = 0;
     double unresolved = 0;  // share of the links that led nowhere
-};
-
-/// Where an element's light comes from: see PlacedArrivals.
-struct ElementArrivals {
-    ArrivalMap surfaces, sky;
-    float sky_share = 0;
 };
 
 class RadianceField {
