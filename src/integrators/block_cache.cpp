@@ -9,13 +9,11 @@
 #include "base/pixel_rect.hpp"
 #include "blocks/dim_environment.hpp"
 #include "integrators/cell_rows.hpp"
-#include "integrators/error_prediction.hpp"
 #include "integrators/gather_estimate.hpp"
-#include "integrators/light_pilot.hpp"
 #include "integrators/light_source.hpp"
 #include "integrators/lit_sample.hpp"
 #include "integrators/path_tracer.hpp"
-#include "integrators/residual_filter.hpp"
+#include "integrators/residual_film.hpp"
 #include "radiance/caustic_map.hpp"
 #include "radiance/direct_light.hpp"
 
@@ -23,7 +21,6 @@ namespace relumine {
 namespace {
 
 constexpr std::uint32_t samples_per_pass = 16;  // that share maps
-constexpr int filter_levels = 3;
 
 /// Radiance over which light is bright, and below which relative errors do not matter, against the
 /// environment's mean.
@@ -35,13 +32,6 @@ constexpr std::uint64_t usual_record_bytes = 55'000;
 /// Texels along each side of the world's square.
 constexpr int grid_side = 64;
 
-/// What the filter needs of a pixel beside its guide.
-struct PixelResidual {
-    Spectrum direct, indirect;  // dim
-    Spectrum bright;
-    Spectrum albedo;  // directional, times the throughput of what is before
-};
-
 /// A thread's memory for one pixel after the other.
 struct Workspace {
     MapIntegral integral;
@@ -50,27 +40,6 @@ struct Workspace {
     ResidualDistribution distribution;
 };
 
-/// The samples of a cell on their way.
-struct LitCell {
-    PixelRect rect;
-    std::size_t per_pixel;
-    std::vector<LitSample> samples;  // pixel by pixel, row-major
-    std::vector<PilotLight> pilots;  // by pixel
-
-    [[nodiscard]] std::span<LitSample> at(int x, int y) {
-        const int pixel = (y - rect.y0) * rect.width() + x - rect.x0;
-        return std::span(samples).subspan(static_cast<std::size_t>(pixel) * per_pixel, per_pixel);
-    }
-    [[nodiscard]] ExpectedLight expected(int x, int y) const {
-        return expected_light(pilots, rect.width(), x - rect.x0, y - rect.y0);
-    }
-};
-
-Spectrum divided(Spectrum a, Spectrum b) {
-    const auto channel = [](float x, float y) { return y > 1e-6f ? x / y : 0.0f; };
-    return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
-}
-
 class BlockCache final : public Integrator {
   public:
     BlockCache(const RenderSettings& settings, const CachePlan& plan, const Transport& transport,
@@ -78,8 +47,8 @@ class BlockCache final : public Integrator {
         : transport_(transport),
           view_(view),
           surface_layers_(surface_layers),
-          predicts_(std::ranges::find(settings.aovs, "error") != settings.aovs.end()),
           plan_(plan),
+          found_(plan.filters, std::ranges::find(settings.aovs, "error") != settings.aovs.end()),
           max_depth_(depth_limit(settings)),
           source_(incident_source(settings, transport)),
           map_source_(source_),
@@ -97,11 +66,9 @@ class BlockCache final : public Integrator {
 
     [[nodiscard]] bool works_in_preparation() const override { return true; }
     [[nodiscard]] std::uint64_t known_bytes() const override {  // of records and maps the least
-        const std::size_t filtered = (plan_.filters ? sizeof(PixelResidual) : 0)
-                                     + (estimates_noise() ? sizeof(FilterGuide) + sizeof(PixelDoubt) : 0);
         const auto row =
             static_cast<std::size_t>(std::min(view_.window.width() + 5 * cell_pixels, view_.width));
-        return count(region()) * (sizeof(PixelSums) + filtered)
+        return count(region()) * (sizeof(PixelSums) + found_.bytes_per_pixel())
                + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel) + least_bytes();
     }
     void keep_within(std::uint64_t bytes) override {
@@ -113,9 +80,7 @@ class BlockCache final : public Integrator {
     void prepare(Preparation& p) override {
         region_ = region();
         pixels_.assign(count(region_), {});
-        residuals_.assign(plan_.filters ? count(region_) : 0, {});
-        guides_.assign(estimates_noise() ? count(region_) : 0, {});
-        doubts_.assign(estimates_noise() ? count(region_) : 0, {});
+        found_.begin(region_.width(), region_.height());
         constexpr int margin = CellRows::reach * cell_pixels;
         const MapSource maps{map_source_, split_, grid_, environment_};
         CellRows rows({transport_, view_, surface_layers_, max_depth_, maps}, plan_, region_);
@@ -126,7 +91,8 @@ class BlockCache final : public Integrator {
             rows.release();
             if (p.progress) p.progress(static_cast<double>(y - cell_pixels - region_.y0) / region_.height());
         }
-        add_found(p);  // after a stop, too: what is lit may be all there is to show
+        // After a stop, too: what is lit may be all there is to show.
+        found_.add_to(pixels_, plan_.exact, !split_.empty(), p.threads);
     }
 
     void render(Tile& tile) const override {
@@ -138,24 +104,13 @@ class BlockCache final : public Integrator {
     }
 
   private:
-    static PixelRect aligned(const PixelRect& r) {
-        const auto down = [](int v) {
-            return v >= 0 ? v / cell_pixels * cell_pixels
-                          : -((-v + cell_pixels - 1) / cell_pixels * cell_pixels);
-        };
-        return {down(r.x0), down(r.y0), down(r.x1 + cell_pixels - 1), down(r.y1 + cell_pixels - 1)};
-    }
     static std::size_t count(const PixelRect& r) {
         return static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height());
     }
-    /// Whether pixels must know their surroundings.
-    [[nodiscard]] bool estimates_noise() const { return plan_.filters || predicts_; }
     /// What a pass computes: the window, and what its filter reaches.
     [[nodiscard]] PixelRect region() const {
-        const int reach = plan_.filters ? smoothing_reach(filter_levels)
-                          : predicts_   ? filter_reach(noise_levels)
-                                        : 0;
-        return intersection(aligned(grown(view_.window, reach)), {0, 0, view_.width, view_.height});
+        return intersection(aligned(grown(view_.window, found_.reach()), cell_pixels),
+                            {0, 0, view_.width, view_.height});
     }
     /// Of a row.
     [[nodiscard]] std::uint64_t cells() const {
@@ -248,10 +203,8 @@ class BlockCache final : public Integrator {
         DoubtSum doubt;
         for (const LitSample& sample : samples) finish_sample(sample, sums, residual, doubt, rays);
         pixels_[index_of(x, y)] = sums.pixels[0];
-        if (plan_.filters) residuals_[index_of(x, y)] = residual;
-        if (!estimates_noise()) return;
-        doubts_[index_of(x, y)] = doubt.finish();
-        guides_[index_of(x, y)] = guide_of(row, x, y);
+        if (found_.estimates_noise())
+            found_.put(index_of(x, y), residual, doubt.finish(), guide_of(row, x, y));
     }
 
     /// Map integrals and residual rays of a pixel's samples. Samples that see the same surface alike share an
@@ -285,7 +238,7 @@ class BlockCache final : public Integrator {
                 sample.maps = static_cast<float>(blend.maps().size());
                 const Spectrum scale = diffuse_ratio(first, sample);
                 take_reflected(first, blend, scale, w, sample);
-                if (estimates_noise()) sample.deviation = luminance(scale) * w.integral.deviation();
+                if (found_.estimates_noise()) sample.deviation = luminance(scale) * w.integral.deviation();
                 ++counts.points;
                 estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution,
                                has_layers(first.bsdf) ? Spectrum{1} : scale, budget.residual},
@@ -329,7 +282,7 @@ class BlockCache final : public Integrator {
         const StepTimer timer(counts, CacheStep::shade);
         w.integral.run(blend, sample.bsdf, sample.pixel->cache.gather.frame.n);
         w.has_matte = false;
-        if (plan_.rays.residual > 0 || estimates_noise()) w.integral.estimate_deviations();
+        if (plan_.rays.residual > 0 || found_.estimates_noise()) w.integral.estimate_deviations();
         if (plan_.rays.residual > 0) w.distribution.build(w.integral);
     }
 
@@ -378,7 +331,7 @@ class BlockCache final : public Integrator {
             radiance.direct = throughput * reflected.direct;
             radiance.indirect = throughput * reflected.indirect;
         }
-        if (estimates_noise())
+        if (found_.estimates_noise())
             doubt.add(found, throughput, radiance.total(), sample.albedo, sample.deviation);
         if (plan_.filters) {
             residual.bright += throughput * (found.bright + found.light.radiance);
@@ -410,56 +363,11 @@ class BlockCache final : public Integrator {
         return {};
     }
 
-    /// Adds what rays have found, filtered, and what pixels are expected to be wrong by.
-    void add_found(const Preparation& p) {
-        if (!estimates_noise()) return;
-        const FilterImage guides{region_.width(), region_.height(), guides_, {}};
-        add_kind(guides, &PixelDoubt::residual,
-                 {{&PixelResidual::direct, &SplitRadiance::direct},
-                  {&PixelResidual::indirect, &SplitRadiance::indirect}},
-                 p.threads);
-        if (!split_.empty())
-            add_kind(guides, &PixelDoubt::bright, {{&PixelResidual::bright, &SplitRadiance::direct}},
-                     p.threads);
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            pixels_[i].error.variance += doubts_[i].samples_variance;
-            if (!plan_.exact) pixels_[i].error.deviation += deviation_left(doubts_[i]);
-        }
-    }
-
-    struct Part {
-        Spectrum PixelResidual::*found;
-        Spectrum SplitRadiance::*light;
-    };
-
-    /// Parts of one kind: divided by what the surface reflects, smoothed, and multiplied again.
-    void add_kind(const FilterImage& guides, NoiseEstimate PixelDoubt::*kind, const std::vector<Part>& parts,
-                  int threads) {
-        std::vector<float> variances = noise_variances(guides, doubts_, kind, threads);
-        if (plan_.filters) {
-            FilterParts values(parts.size());
-            for (std::size_t k = 0; k < parts.size(); ++k)
-                for (const PixelResidual& r : residuals_)
-                    values[k].push_back(divided(r.*parts[k].found, r.albedo));
-            variances = smooth_noise(guides, values, variances, filter_levels, threads);
-            for (std::size_t k = 0; k < parts.size(); ++k) add_part(parts[k], values[k]);
-        }
-        for (std::size_t i = 0; i < pixels_.size(); ++i)
-            pixels_[i].error.variance += variances[i] * sqr(doubts_[i].albedo);
-    }
-
-    void add_part(const Part& part, const std::vector<Spectrum>& values) {
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const Spectrum sum = values[i] * residuals_[i].albedo;
-            pixels_[i].radiance += sum;
-            pixels_[i].split.*part.light += sum;
-        }
-    }
-
     const Transport& transport_;
     const View& view_;
-    bool surface_layers_, predicts_;
+    bool surface_layers_;
     CachePlan plan_;
+    ResidualFilm found_;
     std::uint32_t max_depth_;
     IncidentRadiance source_, map_source_;  // the truth, or what stands for it; what maps hold
     GatherEstimate monte_carlo_;
@@ -470,9 +378,6 @@ class BlockCache final : public Integrator {
 
     PixelRect region_;  // that the pass computes
     std::vector<PixelSums> pixels_;
-    std::vector<PixelResidual> residuals_;
-    std::vector<FilterGuide> guides_;
-    std::vector<PixelDoubt> doubts_;
 };
 
 }  // namespace

@@ -2,7 +2,9 @@
 // A camera sample on its way from maps to the film, and which samples of a pixel are alike.
 #pragma once
 
+#include "base/pixel_rect.hpp"
 #include "integrators/gbuffer.hpp"
+#include "integrators/light_pilot.hpp"
 #include "integrators/residual_rays.hpp"
 
 namespace relumine {
@@ -17,6 +19,22 @@ struct LitSample {
     float deviation = 0;      // that the maps' light may be off by, luminance
     float maps = 0;           // that were blended
     bool done = false;        // has its integral
+};
+
+/// The samples of a cell on their way.
+struct LitCell {
+    PixelRect rect;
+    std::size_t per_pixel;
+    std::vector<LitSample> samples;  // pixel by pixel, row-major
+    std::vector<PilotLight> pilots;  // by pixel
+
+    [[nodiscard]] std::span<LitSample> at(int x, int y) {
+        const int pixel = (y - rect.y0) * rect.width() + x - rect.x0;
+        return std::span(samples).subspan(static_cast<std::size_t>(pixel) * per_pixel, per_pixel);
+    }
+    [[nodiscard]] ExpectedLight expected(int x, int y) const {
+        return expected_light(pilots, rect.width(), x - rect.x0, y - rect.y0);
+    }
 };
 
 /// Whether the integral for `a` stands for `b` of the same pixel, but for the colour of the diffuse part: the
