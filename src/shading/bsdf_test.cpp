@@ -16,18 +16,7 @@
 namespace relumine {
 namespace {
 
-using testing::cell_integral;
-using testing::coated;
-using testing::Density;
-using testing::direction;
-using testing::directional_albedo;
-using testing::Extremes;
-using testing::ggx;
-using testing::phi_cells;
-using testing::plastic;
-using testing::random_numbers;
-using testing::theta_cells;
-using testing::with_sheen;
+using namespace testing;  // of tests/bsdfs.hpp
 
 constexpr int draws = 400'000;
 

@@ -10,16 +10,7 @@
 namespace relumine {
 namespace {
 
-using testing::cell_integral;
-using testing::coated;
-using testing::Density;
-using testing::direction;
-using testing::directional_albedo;
-using testing::Extremes;
-using testing::ggx;
-using testing::phi_cells;
-using testing::random_numbers;
-using testing::theta_cells;
+using namespace testing;  // of tests/bsdfs.hpp
 
 TEST(Ggx, GrazingAlbedoIsAnUpperBoundOfTheLobes) {
     for (int i = 0; i <= 30; ++i)
