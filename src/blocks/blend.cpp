@@ -34,6 +34,12 @@ void Blend::add(const BlockMap& map, float weight) {
     if (weight > least.weight) least = {&map, weight};
 }
 
+float Blend::smallest_block() const {
+    float least = infinity;
+    for (const WeightedMap& m : maps()) least = std::min(least, m.map->size);
+    return least;
+}
+
 void Blend::normalize() {
     float sum = 0;
     for (const WeightedMap& m : maps()) sum += m.weight;

@@ -22,6 +22,8 @@ class Blend {
 
     [[nodiscard]] std::span<const WeightedMap> maps() const { return {maps_.data(), count_}; }
     [[nodiscard]] bool empty() const { return count_ == 0; }
+    /// The side of the smallest map's block, pixels.
+    [[nodiscard]] float smallest_block() const;
     /// Keeps the heaviest.
     void add(const BlockMap& map, float weight);
     void normalize();

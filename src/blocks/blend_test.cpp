@@ -134,5 +134,13 @@ TEST(Blend, KeepsTheHeaviest) {
     for (const WeightedMap& m : blend.maps()) EXPECT_LT(m.map->center_x, 8.5f + Blend::most);
 }
 
+TEST(Blend, KnowsItsSmallestBlock) {
+    const BlockMap large = block(32, 32, 64), small = block(40, 40, 16), other = block(20, 20, 32);
+    Blend blend;
+    EXPECT_EQ(blend.smallest_block(), infinity);
+    for (const BlockMap* map : {&large, &small, &other}) blend.add(*map, 1);
+    EXPECT_EQ(blend.smallest_block(), 16);
+}
+
 }  // namespace
 }  // namespace relumine

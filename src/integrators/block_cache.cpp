@@ -7,15 +7,11 @@
 
 #include "base/executor.hpp"
 #include "base/pixel_rect.hpp"
-#include "blocks/dim_environment.hpp"
-#include "integrators/cell_rows.hpp"
-#include "integrators/gather_estimate.hpp"
+#include "integrators/cell_light.hpp"
 #include "integrators/light_source.hpp"
-#include "integrators/lit_sample.hpp"
 #include "integrators/path_tracer.hpp"
 #include "integrators/residual_film.hpp"
 #include "radiance/caustic_map.hpp"
-#include "radiance/direct_light.hpp"
 
 namespace relumine {
 namespace {
@@ -31,14 +27,6 @@ constexpr std::uint64_t usual_record_bytes = 55'000;
 
 /// Texels along each side of the world's square.
 constexpr int grid_side = 64;
-
-/// A thread's memory for one pixel after the other.
-struct Workspace {
-    MapIntegral integral;
-    MapIntegral matte;  // of its diffuse part, if has_matte
-    bool has_matte = false;
-    ResidualDistribution distribution;
-};
 
 class BlockCache final : public Integrator {
   public:
@@ -135,18 +123,15 @@ class BlockCache final : public Integrator {
         parallel_for(p.threads, here.cells(), [&](std::size_t i) {
             const PixelRect cell = intersection(here.cell(i), region_);
             if (cell.x0 >= cell.x1 || p.stop()) return;
-            const std::vector<const BlockMap*> candidates = rows.maps_around(i);
-            const MapIntegral integral(grid_, points_, environment_, plan_.exact);
-            Workspace workspace{integral, integral, false, ResidualDistribution(grid_)};
             RayCounts rays;
             CacheCounts counts;
             WorkDone dropped;
-            LitCell lit = begin_cell(here, cell, rays, counts);
+            LitCell lit = light_cell(light_source(), here, cell, rows.maps_around(i), rays, counts);
             for (int y = cell.y0; y < cell.y1; ++y)
                 for (int x = cell.x0; x < cell.x1; ++x) {
                     Tile sums = make_tile({x, y, x + 1, y + 1}, 0, 0);
                     sums.probe = p.probe;
-                    light_pixel(here, candidates, lit, workspace, sums, rays, counts);
+                    finish_pixel(here, lit, sums, rays);
                     if (contains(view_.window, x, y)) dropped.add(sums.non_finite, sums.first_non_finite);
                 }
             const std::lock_guard lock(mutex);
@@ -156,161 +141,25 @@ class BlockCache final : public Integrator {
         });
     }
 
-    /// The light of lights without size on all samples of a cell, and the first samples of the others.
-    LitCell begin_cell(const CellRow& row, const PixelRect& rect, RayCounts& rays,
-                       CacheCounts& counts) const {
-        const StepTimer timer(counts, CacheStep::product);
-        LitCell cell{rect, row.samples.size(), {}, std::vector<PilotLight>(count(rect))};
-        cell.samples.resize(count(rect) * cell.per_pixel);
-        const ResidualSettings settings = residual_settings();
-        ResidualEstimator estimator(settings, rays);
-        const float pilot =
-            plan_.demand.light_adapts ? plan_.demand.pilot / plan_.pixel_samples : plan_.rays.light;
-        for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x)
-                for (std::size_t s = 0; s < cell.per_pixel; ++s) {
-                    LitSample& sample = cell.at(x, y)[s];
-                    sample.pixel = &row.samples[s]->at(x, y);
-                    if (!sample.pixel->point) continue;
-                    const ShadingPoint& point = *sample.pixel->point;
-                    sample.delta =
-                        delta_light(transport_, point.vertex,
-                                    sample.pixel->stream.bits(Dim::opacity, 2 * point.path.depth + 1), rays);
-                    if (!sample.pixel->reflects_alone) continue;
-                    sample.bsdf = *receiver_bsdf(point.vertex, map_frame);
-                    estimator.add_light(point, sample.pixel->stream, pilot, LightSeries::first,
-                                        sample.sampled.light);
-                }
-        estimator.finish();
-        for (std::size_t i = 0; i < cell.samples.size(); ++i)
-            if (const LitSample& sample = cell.samples[i]; sample.pixel->reflects_alone)
-                cell.pilots[i / cell.per_pixel].add(sample.sampled.light,
-                                                    luminance(sample.pixel->point->path.throughput));
-        return cell;
-    }
-
-    [[nodiscard]] ResidualSettings residual_settings() const {
-        return {source_, split_, environment_, plan_.rays, plan_.exact};
+    [[nodiscard]] CellLightSource light_source() const {
+        return {transport_,
+                monte_carlo_,
+                {source_, split_, environment_, plan_.rays, plan_.exact},
+                grid_,
+                points_,
+                plan_,
+                found_.estimates_noise()};
     }
 
     /// `sums`: of the pixel, empty.
-    void light_pixel(const CellRow& row, std::span<const BlockMap* const> candidates, LitCell& cell,
-                     Workspace& w, Tile& sums, RayCounts& rays, CacheCounts& counts) {
+    void finish_pixel(const CellRow& row, LitCell& cell, Tile& sums, RayCounts& rays) {
         const int x = sums.rect.x0, y = sums.rect.y0;
-        const std::span<LitSample> samples = cell.at(x, y);
-        light_from_maps(candidates, samples, cell.expected(x, y), w, rays, counts);
         PixelResidual residual;
         DoubtSum doubt;
-        for (const LitSample& sample : samples) finish_sample(sample, sums, residual, doubt, rays);
+        for (const LitSample& sample : cell.at(x, y)) finish_sample(sample, sums, residual, doubt, rays);
         pixels_[index_of(x, y)] = sums.pixels[0];
         if (found_.estimates_noise())
             found_.put(index_of(x, y), residual, doubt.finish(), guide_of(row, x, y));
-    }
-
-    /// Map integrals and residual rays of a pixel's samples. Samples that see the same surface alike share an
-    /// integral.
-    void light_from_maps(std::span<const BlockMap* const> candidates, std::span<LitSample> samples,
-                         const ExpectedLight& bright, Workspace& w, RayCounts& rays,
-                         CacheCounts& counts) const {
-        const ResidualSettings settings = residual_settings();
-        ResidualEstimator estimator(settings, rays);
-        std::vector<FoundLight> more(samples.size());
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            const LitSample& first = samples[i];
-            if (!first.pixel->reflects_alone || first.done) continue;
-            const Blend blend = blend_maps(first.pixel->cache, candidates);
-            if (blend.empty()) {
-                samples[i].reflected = monte_carlo_.reflected(*first.pixel->point, first.pixel->stream, rays);
-                samples[i].sampled = {};
-                ++counts.gathered;
-                continue;
-            }
-            integrate(first, blend, w, counts);
-            const RayBudget budget =
-                budget_of(first, bright, w, pass_share(samples.size(), plan_.pixel_samples));
-            const StepTimer timer(counts, CacheStep::product);
-            for (std::size_t j = i; j < samples.size(); ++j) {
-                LitSample& sample = samples[j];
-                if (!sample.pixel->reflects_alone || sample.done
-                    || (j != i && !shares_integral(first, sample, plan_.exact)))
-                    continue;
-                sample.done = true;
-                sample.maps = static_cast<float>(blend.maps().size());
-                const Spectrum scale = diffuse_ratio(first, sample);
-                take_reflected(first, blend, scale, w, sample);
-                if (found_.estimates_noise()) sample.deviation = luminance(scale) * w.integral.deviation();
-                ++counts.points;
-                estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution,
-                               has_layers(first.bsdf) ? Spectrum{1} : scale, budget.residual},
-                              sample.sampled);
-                estimator.add_light(*sample.pixel->point, sample.pixel->stream, budget.light,
-                                    LightSeries::second, more[j]);
-            }
-            estimator.finish();
-        }
-        for (std::size_t i = 0; i < samples.size(); ++i) samples[i].sampled.light.join(more[i]);
-    }
-
-    /// √ of the samples of this pass over all of the picture's: the whole errs less than a pass by as much.
-    [[nodiscard]] static float pass_share(std::size_t samples, float all) {
-        return std::sqrt(std::min(1.0f, static_cast<float>(samples) / all));
-    }
-
-    /// Rays for a sample with the integral in `w`: as many as its expected error asks for. Nothing that they
-    /// are to find may count.
-    [[nodiscard]] RayBudget budget_of(const LitSample& sample, const ExpectedLight& bright,
-                                      const Workspace& w, float pass_share) const {
-        const RayDemand& demand = plan_.demand;
-        const MapRadiance held = w.integral.reflected();
-        const float throughput = luminance(sample.pixel->point->path.throughput);
-        const float shines = luminance(sample.pixel->emission)
-                             + throughput * luminance(held.direct + held.indirect + sample.delta)
-                             + bright.mean;
-        if (!(shines > 0)) return {plan_.rays.residual, 0};
-        RayBudget budget{plan_.rays.residual, 0};
-        if (demand.residual_adapts && plan_.rays.residual > 0)
-            budget.residual =
-                demand.residual_rays(throughput * w.integral.deviation() / shines) / plan_.pixel_samples;
-        if (demand.light_adapts)
-            budget.light =
-                bright.known ? demand.more_light(bright.deviation * pass_share / shines) / plan_.pixel_samples
-                             : plan_.rays.light;
-        return budget;
-    }
-
-    void integrate(const LitSample& sample, const Blend& blend, Workspace& w, CacheCounts& counts) const {
-        const StepTimer timer(counts, CacheStep::shade);
-        w.integral.run(blend, sample.bsdf, sample.pixel->cache.gather.frame.n);
-        w.has_matte = false;
-        if (plan_.rays.residual > 0 || found_.estimates_noise()) w.integral.estimate_deviations();
-        if (plan_.rays.residual > 0) w.distribution.build(w.integral);
-    }
-
-    /// The integral of `first`, its diffuse part multiplied by `scale`. Where there are layers over it, that
-    /// part is another integral.
-    static void take_reflected(const LitSample& first, const Blend& blend, Spectrum scale, Workspace& w,
-                               LitSample& sample) {
-        const MapRadiance all = w.integral.reflected();
-        const auto scaled = [&](Spectrum whole, Spectrum part) {
-            return whole + (scale - Spectrum{1}) * part;
-        };
-        if (scale == Spectrum{1}) {
-            sample.reflected = {{}, all.direct, all.indirect};
-            sample.albedo = w.integral.albedo();
-        } else if (!has_layers(first.bsdf)) {
-            sample.reflected = {{}, scale * all.direct, scale * all.indirect};
-            sample.albedo = scale * w.integral.albedo();
-        } else {
-            if (!w.has_matte) {
-                ReceiverBsdf matte = first.bsdf;
-                matte.specular = false;
-                w.matte.run(blend, matte, first.pixel->cache.gather.frame.n);
-                w.has_matte = true;
-            }
-            const MapRadiance part = w.matte.reflected();
-            sample.reflected = {{}, scaled(all.direct, part.direct), scaled(all.indirect, part.indirect)};
-            sample.albedo = scaled(w.integral.albedo(), w.matte.albedo());
-        }
     }
 
     /// Adds a sample with all its light; what is to be filtered goes into `residual` instead.

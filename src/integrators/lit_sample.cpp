@@ -7,6 +7,7 @@ namespace {
 
 constexpr float alike = 0.02f;           // relative difference of what lobes are made of
 constexpr float least_cosine = 0.9998f;  // between normals: 1.1°
+constexpr float alike_view = 0.03f;      // of a lobe's width
 constexpr float least_albedo = 0.01f;    // that another may be divided by
 
 bool near(Spectrum a, Spectrum b) {
@@ -32,6 +33,10 @@ bool same_lobes(const ReceiverBsdf& a, const ReceiverBsdf& b) {
            && near(a.coat_f0, b.coat_f0) && near(a.coat_f90, b.coat_f90);
 }
 
+Vec3 view_of(const ReceiverBsdf& b) {
+    return b.shading_x * b.w_out.v.x + b.shading_y * b.w_out.v.y + b.shading_z * b.w_out.v.z;
+}
+
 /// Whether b / a makes sense in every channel.
 bool divides(Spectrum a, Spectrum b) {
     return (a.r >= least_albedo || b.r == 0) && (a.g >= least_albedo || b.g == 0)
@@ -47,6 +52,12 @@ bool shares_integral(const LitSample& a, const LitSample& b, bool exact) {
     const bool scales = divides(a.bsdf.diffuse, b.bsdf.diffuse);
     if (!has_layers(a.bsdf)) return scales;
     return same_lobes(a.bsdf, b.bsdf) && (near(a.bsdf.diffuse, b.bsdf.diffuse) || (scales && !exact));
+}
+
+bool seen_alike(const LitSample& a, const LitSample& b) {
+    if (!has_layers(a.bsdf)) return true;
+    const float width = a.bsdf.specular ? std::min(alpha_x(a.bsdf.ggx), alpha_y(a.bsdf.ggx)) : 1;
+    return length_squared(view_of(b.bsdf) - view_of(a.bsdf)) <= sqr(alike_view * width);
 }
 
 Spectrum diffuse_ratio(const LitSample& a, const LitSample& b) {

@@ -15,6 +15,7 @@ struct LitSample {
     SplitRadiance reflected;  // of the maps' radiance
     Spectrum delta;           // of lights without size
     SampledRadiance sampled;  // what residual and shadow rays add
+    FoundLight more_light;    // of the second series, until it joins `sampled`
     Spectrum albedo;          // directional
     float deviation = 0;      // that the maps' light may be off by, luminance
     float maps = 0;           // that were blended
@@ -41,6 +42,10 @@ struct LitCell {
 /// same maps, and lobes that look alike to within much less than their width. `exact`: that colour may differ
 /// where there is nothing else alone.
 [[nodiscard]] bool shares_integral(const LitSample& a, const LitSample& b, bool exact);
+
+/// Whether samples of two pixels are looked at from where their lobes look alike: an integral that samples of
+/// one pixel would share may be shared by them, too.
+[[nodiscard]] bool seen_alike(const LitSample& a, const LitSample& b);
 
 /// Whether a surface reflects otherwise than diffusely.
 [[nodiscard]] inline bool has_layers(const ReceiverBsdf& b) { return b.specular || b.coated; }

@@ -64,6 +64,24 @@ TEST(LitSample, LobesPlacesAndNormalsMayNot) {
     EXPECT_FALSE(shares([](GroundSample& b) { b.lit.bsdf.coated = true; }));
 }
 
+TEST(LitSample, PixelsShareWhatLooksAlikeFromBoth) {
+    const GroundSample a;
+    const auto alike = [&](float angle, float alpha) {
+        GroundSample b, c = a;
+        b.lit.bsdf.w_out = LocalDir{{std::sin(angle), 0, std::cos(angle)}};
+        c.lit.bsdf.w_out = LocalDir{{0, 0, 1}};
+        b.lit.bsdf.ggx.alpha = c.lit.bsdf.ggx.alpha = alpha;
+        return seen_alike(c.sample(), b.sample());
+    };
+    EXPECT_TRUE(alike(0.002f, 0.3f));
+    EXPECT_FALSE(alike(0.002f, 0.05f));
+    EXPECT_FALSE(alike(0.02f, 0.3f));
+    GroundSample matte = a, turned = a;
+    matte.lit.bsdf.specular = turned.lit.bsdf.specular = false;
+    turned.lit.bsdf.w_out = LocalDir{{0.6f, 0, 0.8f}};
+    EXPECT_TRUE(seen_alike(matte.sample(), turned.sample()));
+}
+
 TEST(LitSample, AMatteSurfaceSharesWhateverItsColour) {
     GroundSample a, b;
     a.lit.bsdf.specular = b.lit.bsdf.specular = false;

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pilot light samples, then quad by quad of pixels map integrals and residual rays.
+#include "integrators/cell_light.hpp"
+
+#include "integrators/shared_integral.hpp"
+#include "radiance/direct_light.hpp"
+
+namespace relumine {
+namespace {
+
+/// Pixels along each side of the squares whose samples may share an integral, if no map around is of a
+/// smaller block than the second: weights of maps change by an eighth from pixel to pixel then.
+constexpr int quad_pixels = 2;
+constexpr float quad_shares = 16;
+
+/// √ of the samples of this pass over all of the picture's: the whole errs less than a pass by as much.
+float pass_share(std::size_t samples, float all) {
+    return std::sqrt(std::min(1.0f, static_cast<float>(samples) / all));
+}
+
+class CellLight {
+  public:
+    CellLight(const CellLightSource& source, std::span<const BlockMap* const> maps, LitCell& cell,
+              RayCounts& rays, CacheCounts& counts)
+        : source_(source),
+          plan_(source.plan),
+          maps_(maps),
+          cell_(cell),
+          estimator_(source.residual, rays),
+          shared_({source.grid, source.points, source.residual.environment, source.plan.exact},
+                  {source.estimates_noise, source.plan.rays.residual > 0}),
+          rays_(rays),
+          counts_(counts) {}
+
+    /// The light of lights without size on all samples, and the first samples of the others.
+    void add_pilot(const CellRow& row) {
+        const StepTimer timer(counts_, CacheStep::product);
+        for (int y = cell_.rect.y0; y < cell_.rect.y1; ++y)
+            for (int x = cell_.rect.x0; x < cell_.rect.x1; ++x)
+                for (std::size_t s = 0; s < cell_.per_pixel; ++s) {
+                    LitSample& sample = cell_.at(x, y)[s];
+                    sample.pixel = &row.samples[s]->at(x, y);
+                    if (sample.pixel->point) add_pilot(sample);
+                }
+        estimator_.finish();
+        for (std::size_t i = 0; i < cell_.samples.size(); ++i)
+            if (const LitSample& sample = cell_.samples[i]; sample.pixel->reflects_alone)
+                cell_.pilots[i / cell_.per_pixel].add(sample.sampled.light,
+                                                      luminance(sample.pixel->point->path.throughput));
+    }
+
+    /// Map integrals and residual rays; what those find is there at the end.
+    void add_maps() {
+        for (int y = cell_.rect.y0; y < cell_.rect.y1; y += quad_pixels)
+            for (int x = cell_.rect.x0; x < cell_.rect.x1; x += quad_pixels)
+                light_quad(intersection({x, y, x + quad_pixels, y + quad_pixels}, cell_.rect));
+        const StepTimer timer(counts_, CacheStep::product);
+        estimator_.finish();
+        for (LitSample& sample : cell_.samples) sample.sampled.light.join(sample.more_light);
+    }
+
+  private:
+    void add_pilot(LitSample& sample) {
+        const ShadingPoint& point = *sample.pixel->point;
+        const SampleStream& stream = sample.pixel->stream;
+        sample.delta = delta_light(source_.transport, point.vertex,
+                                   stream.bits(Dim::opacity, 2 * point.path.depth + 1), rays_);
+        if (!sample.pixel->reflects_alone) return;
+        sample.bsdf = *receiver_bsdf(point.vertex, map_frame);
+        const RayDemand& demand = plan_.demand;
+        const float rays = demand.light_adapts ? demand.pilot / plan_.pixel_samples : plan_.rays.light;
+        estimator_.add_light(point, stream, rays, LightSeries::first, sample.sampled.light);
+    }
+
+    /// Samples of a pixel that see the same surface alike share an integral, and so do those of the quad's
+    /// pixels where maps are large.
+    void light_quad(const PixelRect& quad) {
+        for (int y = quad.y0; y < quad.y1; ++y)
+            for (int x = quad.x0; x < quad.x1; ++x)
+                for (LitSample& first : cell_.at(x, y)) {
+                    if (!first.pixel->reflects_alone || first.done) continue;
+                    const Blend blend = blend_maps(first.pixel->cache, maps_);
+                    if (blend.empty()) {
+                        gather(first);
+                        continue;
+                    }
+                    integrate(first, blend);
+                    const StepTimer timer(counts_, CacheStep::product);
+                    light_pixel(x, y, true);
+                    if (blend.smallest_block() >= quad_shares) light_others(quad, x, y);
+                }
+    }
+
+    void gather(LitSample& sample) {
+        sample.reflected = source_.monte_carlo.reflected(*sample.pixel->point, sample.pixel->stream, rays_);
+        sample.sampled = {};
+        sample.done = true;
+        ++counts_.gathered;
+    }
+
+    void integrate(const LitSample& first, const Blend& blend) {
+        const StepTimer timer(counts_, CacheStep::shade);
+        shared_.run(first, blend);
+    }
+
+    /// The pixels of the quad behind (x, y).
+    void light_others(const PixelRect& quad, int x, int y) {
+        for (int other_y = y; other_y < quad.y1; ++other_y)
+            for (int other_x = other_y == y ? x + 1 : quad.x0; other_x < quad.x1; ++other_x)
+                light_pixel(other_x, other_y, false);
+    }
+
+    /// Lights the samples of a pixel that may share the integral, which is of an `own` sample or of another
+    /// pixel's.
+    void light_pixel(int x, int y, bool own) {
+        const LitSample& first = shared_.first();
+        std::optional<RayBudget> budget;
+        for (LitSample& sample : cell_.at(x, y)) {
+            if (!sample.pixel->reflects_alone || sample.done) continue;
+            if (&sample != &first
+                && !(shares_integral(first, sample, plan_.exact) && (own || seen_alike(first, sample))))
+                continue;
+            if (!budget) budget = budget_of(sample, cell_.expected(x, y));
+            light(sample, *budget);
+        }
+    }
+
+    void light(LitSample& sample, const RayBudget& budget) {
+        sample.done = true;
+        ++counts_.points;
+        const Spectrum scale = shared_.give(sample);
+        const ShadingPoint& point = *sample.pixel->point;
+        const SampleStream& stream = sample.pixel->stream;
+        estimator_.add({point, stream, shared_.integral(), shared_.distribution(), scale, budget.residual},
+                       sample.sampled);
+        estimator_.add_light(point, stream, budget.light, LightSeries::second, sample.more_light);
+    }
+
+    /// As many rays as the expected error of the sample's pixel asks for. Nothing that they are to find may
+    /// count.
+    [[nodiscard]] RayBudget budget_of(const LitSample& sample, const ExpectedLight& bright) const {
+        const RayDemand& demand = plan_.demand;
+        const MapRadiance held = shared_.integral().reflected();
+        const float throughput = luminance(sample.pixel->point->path.throughput);
+        const float shines = luminance(sample.pixel->emission)
+                             + throughput * luminance(held.direct + held.indirect + sample.delta)
+                             + bright.mean;
+        RayBudget budget{plan_.rays.residual, 0};
+        if (!(shines > 0)) return budget;
+        if (demand.residual_adapts && plan_.rays.residual > 0)
+            budget.residual =
+                demand.residual_rays(throughput * shared_.deviation() / shines) / plan_.pixel_samples;
+        if (!demand.light_adapts) return budget;
+        const float deviation = bright.deviation * pass_share(cell_.per_pixel, plan_.pixel_samples);
+        budget.light = bright.known ? demand.more_light(deviation / shines) / plan_.pixel_samples
+                                    : plan_.rays.light;
+        return budget;
+    }
+
+    const CellLightSource& source_;
+    const CachePlan& plan_;
+    std::span<const BlockMap* const> maps_;
+    LitCell& cell_;
+    ResidualEstimator estimator_;
+    SharedIntegral shared_;
+    RayCounts& rays_;
+    CacheCounts& counts_;
+};
+
+LitCell dark_cell(const CellRow& row, const PixelRect& rect) {
+    const auto pixels = static_cast<std::size_t>(rect.width()) * static_cast<std::size_t>(rect.height());
+    LitCell cell{rect, row.samples.size(), {}, std::vector<PilotLight>(pixels)};
+    cell.samples.resize(pixels * cell.per_pixel);
+    return cell;
+}
+
+}  // namespace
+
+LitCell light_cell(const CellLightSource& source, const CellRow& row, const PixelRect& rect,
+                   std::span<const BlockMap* const> maps, RayCounts& rays, CacheCounts& counts) {
+    LitCell cell = dark_cell(row, rect);
+    CellLight light(source, maps, cell, rays, counts);
+    light.add_pilot(row);
+    light.add_maps();
+    return cell;
+}
+
+}  // namespace relumine
