@@ -158,6 +158,16 @@ Spectrum MapIntegral::environment_detail() {
     return sum_open(blend_, open_tiles_, {{detail_[0].data(), detail_[1].data(), detail_[2].data()}});
 }
 
+float MapIntegral::reflected_of(const BlockMap& map) const {
+    float sum = 0;
+    for (std::size_t tile = 0; tile < grid_.tiles; ++tile)
+        sum += luminance({tile_bsdf_[0][tile], tile_bsdf_[1][tile], tile_bsdf_[2][tile]})
+               * map.tile_luminance[tile];
+    for (std::size_t k = 0; k < fine_tiles_.size(); ++k)
+        sum += texel_sums_[k].bsdf / tile_texels * map.tile_luminance[fine_tiles_[k]];
+    return sum;
+}
+
 void MapIntegral::estimate_deviations() {
     for (std::size_t tile = 0; tile < grid_.tiles; ++tile) {
         const float value = luminance({tile_bsdf_[0][tile], tile_bsdf_[1][tile], tile_bsdf_[2][tile]});

@@ -37,6 +37,9 @@ class MapIntegral {
     [[nodiscard]] Spectrum bsdf_at(std::uint32_t texel) const;
     [[nodiscard]] MapRadiance radiance_at(std::uint32_t texel) const;
 
+    /// What would be reflected of one map's radiance alone, luminance, tile by tile: of use in proportions.
+    [[nodiscard]] float reflected_of(const BlockMap& map) const;
+
     /// Estimates by tile how much the true integrand differs from this one: the standard deviation of its
     /// luminance, 1/sr times radiance. From how radiance varies within the tile and between the maps, how f
     /// does, and what no map knows.

@@ -9,8 +9,8 @@ namespace relumine {
 namespace {
 
 /// Pixels along each side of the squares whose samples may share an integral, if no map around is of a
-/// smaller block than the second: weights of maps change by an eighth from pixel to pixel then.
-constexpr int quad_pixels = 2;
+/// smaller block than the second. Weights of maps change there from pixel to pixel: a level takes care of it.
+constexpr int quad_pixels = 4;
 constexpr float quad_shares = 16;
 
 /// √ of the samples of this pass over all of the picture's: the whole errs less than a pass by as much.
@@ -78,7 +78,7 @@ class CellLight {
         for (int y = quad.y0; y < quad.y1; ++y)
             for (int x = quad.x0; x < quad.x1; ++x)
                 for (LitSample& first : cell_.at(x, y)) {
-                    if (!first.pixel->reflects_alone || first.done) continue;
+                    if (!waits(first)) continue;
                     const Blend blend = blend_maps(first.pixel->cache, maps_);
                     if (blend.empty()) {
                         gather(first);
@@ -86,7 +86,7 @@ class CellLight {
                     }
                     integrate(first, blend);
                     const StepTimer timer(counts_, CacheStep::product);
-                    light_pixel(x, y, true);
+                    light_own(x, y);
                     if (blend.smallest_block() >= quad_shares) light_others(quad, x, y);
                 }
     }
@@ -107,32 +107,53 @@ class CellLight {
     void light_others(const PixelRect& quad, int x, int y) {
         for (int other_y = y; other_y < quad.y1; ++other_y)
             for (int other_x = other_y == y ? x + 1 : quad.x0; other_x < quad.x1; ++other_x)
-                light_pixel(other_x, other_y, false);
+                light_other(other_x, other_y);
     }
 
-    /// Lights the samples of a pixel that may share the integral, which is of an `own` sample or of another
-    /// pixel's.
-    void light_pixel(int x, int y, bool own) {
+    /// Lights the samples of a pixel that may share the integral of one of them.
+    void light_own(int x, int y) {
         const LitSample& first = shared_.first();
-        std::optional<RayBudget> budget;
-        for (LitSample& sample : cell_.at(x, y)) {
-            if (!sample.pixel->reflects_alone || sample.done) continue;
-            if (&sample != &first
-                && !(shares_integral(first, sample, plan_.exact) && (own || seen_alike(first, sample))))
-                continue;
-            if (!budget) budget = budget_of(sample, cell_.expected(x, y));
-            light(sample, *budget);
+        light_those(x, y, 1, [&](const LitSample& sample) {
+            return &sample == &first || shares_integral(first, sample, plan_.exact);
+        });
+    }
+
+    /// Lights the samples of a pixel that may share the integral of one of another pixel.
+    void light_other(int x, int y) {
+        const LitSample& first = shared_.first();
+        const auto alike = [&](const LitSample& sample) {
+            return shares_integral(first, sample, plan_.exact) && seen_alike(first, sample);
+        };
+        for (const LitSample& sample : cell_.at(x, y)) {
+            if (!waits(sample) || !alike(sample)) continue;
+            const Blend blend = blend_maps(sample.pixel->cache, maps_);
+            if (blend.smallest_block() >= quad_shares && !blend.empty())
+                light_those(x, y, shared_.level_under(blend), alike);
+            return;
         }
     }
 
-    void light(LitSample& sample, const RayBudget& budget) {
+    template <typename Which>
+    void light_those(int x, int y, float level, const Which& which) {
+        std::optional<RayBudget> budget;
+        for (LitSample& sample : cell_.at(x, y)) {
+            if (!waits(sample) || !which(sample)) continue;
+            if (!budget) budget = budget_of(sample, cell_.expected(x, y));
+            light(sample, level, *budget);
+        }
+    }
+
+    static bool waits(const LitSample& sample) { return sample.pixel->reflects_alone && !sample.done; }
+
+    void light(LitSample& sample, float level, const RayBudget& budget) {
         sample.done = true;
         ++counts_.points;
-        const Spectrum scale = shared_.give(sample);
+        const Spectrum scale = shared_.give(level, sample);
         const ShadingPoint& point = *sample.pixel->point;
         const SampleStream& stream = sample.pixel->stream;
-        estimator_.add({point, stream, shared_.integral(), shared_.distribution(), scale, budget.residual},
-                       sample.sampled);
+        estimator_.add(
+            {point, stream, shared_.integral(), shared_.distribution(), scale, level, budget.residual},
+            sample.sampled);
         estimator_.add_light(point, stream, budget.light, LightSeries::second, sample.more_light);
     }
 
@@ -152,8 +173,8 @@ class CellLight {
                 demand.residual_rays(throughput * shared_.deviation() / shines) / plan_.pixel_samples;
         if (!demand.light_adapts) return budget;
         const float deviation = bright.deviation * pass_share(cell_.per_pixel, plan_.pixel_samples);
-        budget.light = bright.known ? demand.more_light(deviation / shines) / plan_.pixel_samples
-                                    : plan_.rays.light;
+        budget.light =
+            bright.known ? demand.more_light(deviation / shines) / plan_.pixel_samples : plan_.rays.light;
         return budget;
     }
 

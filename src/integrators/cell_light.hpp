@@ -19,8 +19,9 @@ struct CellLightSource {
     bool estimates_noise;
 };
 
-/// Lights the samples of `rect`, part of a cell of `row`, by `maps`. What transmits is left out. Numbers of rays
-/// follow the error that each pixel expects (RayDemand); nothing that a pixel's own rays find counts for it.
+/// Lights the samples of `rect`, part of a cell of `row`, by `maps`. What transmits is left out. Numbers of
+/// rays follow the error that each pixel expects (RayDemand); nothing that a pixel's own rays find counts for
+/// it.
 [[nodiscard]] LitCell light_cell(const CellLightSource& source, const CellRow& row, const PixelRect& rect,
                                  std::span<const BlockMap* const> maps, RayCounts& rays, CacheCounts& counts);
 

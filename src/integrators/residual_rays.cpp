@@ -153,7 +153,7 @@ void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleS
         in_second_half(stream),
         drawn->texel,
         bsdf.value,
-        {h * held.direct, h * held.indirect},
+        {h * held.direct * point.level, h * held.indirect * point.level},
         density,
         drawn->from_bsdf ? rays * share * bsdf.pdf : 0,
         usual_bsdf_rays() * bsdf.pdf,

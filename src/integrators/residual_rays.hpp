@@ -53,6 +53,7 @@ struct IntegratedPoint {
     const MapIntegral& integral;
     const ResidualDistribution& distribution;  // of `integral`
     Spectrum scale;                            // the point's integral is so many times `integral`
+    float level;                               // the same of its radiance
     float rays;                                // residual rays that it gets on average
 };
 

@@ -3,12 +3,18 @@
 #include "integrators/shared_integral.hpp"
 
 namespace relumine {
+namespace {
+
+constexpr float most_level = 2;  // that maps which share an integral may differ by
+
+}  // namespace
 
 void SharedIntegral::run(const LitSample& first, const Blend& blend) {
     first_ = &first;
     blend_ = blend;
     integral_.run(blend, first.bsdf, first.pixel->cache.gather.frame.n);
     has_matte_ = false;
+    reflected_of_.clear();
     if (needs_.deviation || needs_.distribution) {
         integral_.estimate_deviations();
         deviation_ = integral_.deviation();
@@ -16,7 +22,23 @@ void SharedIntegral::run(const LitSample& first, const Blend& blend) {
     if (needs_.distribution) distribution_.build(integral_);
 }
 
-Spectrum SharedIntegral::give(LitSample& sample) {
+float SharedIntegral::level_under(const Blend& other) {
+    const float here = reflected_under(blend_), there = reflected_under(other);
+    return here > 0 ? std::clamp(there / here, 1 / most_level, most_level) : 1;
+}
+
+float SharedIntegral::reflected_under(const Blend& blend) {
+    float sum = 0;
+    for (const auto& [map, weight] : blend.maps()) {
+        auto known = std::ranges::find(reflected_of_, map, &std::pair<const BlockMap*, float>::first);
+        if (known == reflected_of_.end())
+            known = reflected_of_.insert(known, {map, integral_.reflected_of(*map)});
+        sum += weight * known->second;
+    }
+    return sum;
+}
+
+Spectrum SharedIntegral::give(float level, LitSample& sample) {
     const Spectrum scale = diffuse_ratio(*first_, sample);
     const bool layered = has_layers(first_->bsdf);
     if (layered && !(scale == Spectrum{1})) {
@@ -26,8 +48,10 @@ Spectrum SharedIntegral::give(LitSample& sample) {
         sample.reflected = {{}, scale * all.direct, scale * all.indirect};
         sample.albedo = scale * integral_.albedo();
     }
+    sample.reflected.direct *= level;
+    sample.reflected.indirect *= level;
     sample.maps = static_cast<float>(blend_.maps().size());
-    if (needs_.deviation) sample.deviation = luminance(scale) * deviation_;
+    if (needs_.deviation) sample.deviation = level * luminance(scale) * deviation_;
     return layered ? Spectrum{1} : scale;
 }
 

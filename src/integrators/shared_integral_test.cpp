@@ -18,7 +18,8 @@ class GroundUnderMap {
         : stage_({}, testing::even_sky(Spectrum{1}), 32),
           points_(stage_.grid()),
           map_(testing::open_map(stage_.grid(), [&](std::size_t texel) {
-              return Spectrum{1 + stage_.grid().direction_in(static_cast<std::uint32_t>(texel), {0.5f, 0.5f}).v.x};
+              return Spectrum{
+                  1 + stage_.grid().direction_in(static_cast<std::uint32_t>(texel), {0.5f, 0.5f}).v.x};
           })) {
         blend_.add(map_, 1);
         blend_.normalize();
@@ -45,9 +46,22 @@ class GroundUnderMap {
     LitSample given(const LitSample& from, LitSample to, Spectrum* scale = nullptr) {
         SharedIntegral shared({stage_.grid(), points_, stage_.environment(), false}, {true, true});
         shared.run(from, blend_);
-        const Spectrum times = shared.give(to);
+        const Spectrum times = shared.give(1, to);
         if (scale) *scale = times;
         return to;
+    }
+
+    /// Of a blend with a map of three times the radiance that weighs `weight` times the other.
+    float level_with(const LitSample& sample, float weight) {
+        BlockMap bright = map_;
+        for (float& value : bright.tile_luminance) value *= 3;
+        Blend other;
+        other.add(map_, 1);
+        other.add(bright, weight);
+        other.normalize();
+        SharedIntegral shared({stage_.grid(), points_, stage_.environment(), false}, {true, true});
+        shared.run(sample, blend_);
+        return shared.level_under(other);
     }
 
   private:
@@ -69,7 +83,8 @@ void expect_like(Spectrum found, Spectrum expected) {
 TEST(SharedIntegral, GivesOtherColoursWhatTheirOwnWould) {
     GroundUnderMap ground;
     for (const bool layered : {false, true}) {
-        const LitSample a = ground.sample({0.5f, 0.4f, 0.3f}, layered), b = ground.sample({0.1f, 0.6f, 0.3f}, layered);
+        const LitSample a = ground.sample({0.5f, 0.4f, 0.3f}, layered),
+                        b = ground.sample({0.1f, 0.6f, 0.3f}, layered);
         Spectrum scale;
         const LitSample shared = ground.given(a, b, &scale), own = ground.given(b, b);
         expect_like(shared.reflected.direct, own.reflected.direct);
@@ -78,6 +93,14 @@ TEST(SharedIntegral, GivesOtherColoursWhatTheirOwnWould) {
         EXPECT_EQ(shared.maps, 1);
         EXPECT_GT(shared.deviation, 0);
     }
+}
+
+TEST(SharedIntegral, TakesTheLevelOfAnotherBlend) {
+    GroundUnderMap ground;
+    const LitSample a = ground.sample({0.5f, 0.4f, 0.3f}, false);
+    EXPECT_FLOAT_EQ(ground.level_with(a, 0), 1);
+    EXPECT_NEAR(ground.level_with(a, 1), 2, 1e-5f);  // under a map of three times the radiance, half and half
+    EXPECT_EQ(ground.level_with(a, 1e6f), 2);        // bounded
 }
 
 }  // namespace
