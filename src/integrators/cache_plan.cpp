@@ -44,7 +44,7 @@ float RayDemand::more_light(float noise) const {
 }
 
 CachePlan cache_plan(const RenderSettings& s) {
-    constexpr float usual_error = 0.02f, usual_tolerance = 0.2f, usual_residual = 8, usual_light = 16,
+    constexpr float usual_error = 0.02f, usual_tolerance = 0.8f, usual_residual = 8, usual_light = 16,
                     usual_rays_per_pixel = 12, usual_most_rays = 800;
     constexpr std::size_t usual_reprojected = 32;
     const float finer = usual_error / s.error, pixel_samples = static_cast<float>(s.samples_per_pixel);

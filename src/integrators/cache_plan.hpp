@@ -31,8 +31,8 @@ struct CachePlan {
     bool exact = false, filters = false;
 };
 
-/// At an error of 2 %: blocks with a parallax error of a fifth; in proportion. Rays as `demand` says, unless
-/// their number was given.
+/// At an error of 2 %: blocks with a parallax error of four fifths; in proportion. Rays as `demand` says,
+/// unless their number was given.
 [[nodiscard]] CachePlan cache_plan(const RenderSettings& settings);
 
 /// One map per block of 8 × 8 pixels and surface, and nothing else: what maps are worth without more.
