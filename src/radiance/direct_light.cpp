@@ -22,6 +22,19 @@ Spectrum passed_light(const Transport& t, const SurfacePoint& point, const Light
     return t.tracer.passed_light(shadow_ray(point, light, opacity_seed));
 }
 
+void passed_light(const Tracer& tracer, const RayLanes& rays, std::size_t count, SpectrumLanes& share) {
+    constexpr std::size_t least_packet = 8;  // fewer rays are faster one by one
+    if (count < least_packet) {
+        for (std::size_t i = 0; i < count; ++i) share.set(i, tracer.passed_light(rays[i]));
+    } else if (tracer.has_panes()) {
+        tracer.passed_light(rays, share);
+    } else {
+        LaneMask blocked;
+        tracer.occluded(rays, blocked);
+        for (std::size_t i = 0; i < count; ++i) share.set(i, Spectrum{blocked[i] != 0 ? 0.0f : 1.0f});
+    }
+}
+
 Spectrum unshadowed(const Vertex& vertex, const LightSample& light) {
     if (!sides_agree(vertex.point, light.w_in)) return {};
     return eval(vertex.bsdf, vertex.w_out, vertex.point.frame.to_local(light.w_in)) * light.radiance;

@@ -15,6 +15,9 @@ namespace relumine {
 [[nodiscard]] Spectrum passed_light(const Transport& t, const SurfacePoint& point, const LightSample& light,
                                     std::uint32_t opacity_seed, RayCounts& rays);
 
+/// Tracer::passed_light of the first `count` lanes, the only ones that are rays.
+void passed_light(const Tracer& tracer, const RayLanes& rays, std::size_t count, SpectrumLanes& share);
+
 /// The unshadowed light of a sample that the BSDF sends to the viewer: f·|cos θ|·L, or 0 where the sides
 /// disagree.
 [[nodiscard]] Spectrum unshadowed(const Vertex& vertex, const LightSample& light);

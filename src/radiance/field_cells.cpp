@@ -2,6 +2,8 @@
 // Hashing of cells.
 #include "radiance/field_cells.hpp"
 
+#include <cmath>
+
 #include "base/assert.hpp"
 #include "base/hash.hpp"
 
@@ -12,32 +14,39 @@ namespace {
 constexpr float least_cosine = 0.8f;
 constexpr float most_height = 0.35f;  // of the cell's size
 
-constexpr int coarser = 2;                 // octaves: of cells for what only light on its way meets
+constexpr int coarser = 2;  // octaves: of cells for what only light on its way meets
+constexpr float finer_size = 1.0f / (1 << coarser);
 constexpr int coarsest = -20;              // octaves
 constexpr int most_cells = (1 << 18) - 2;  // along each axis, either way
 
-float distance_outside(const Bounds3& box, Vec3 p) {
+float square_outside(const Bounds3& box, Vec3 p) {
     const auto axis = [](float lower, float upper, float x) {
         return std::max({lower - x, x - upper, 0.0f});
     };
-    return length({axis(box.lower.x, box.upper.x, p.x), axis(box.lower.y, box.upper.y, p.y),
-                   axis(box.lower.z, box.upper.z, p.z)});
+    return length_squared(Vec3{axis(box.lower.x, box.upper.x, p.x), axis(box.lower.y, box.upper.y, p.y),
+                               axis(box.lower.z, box.upper.z, p.z)});
 }
 
 }  // namespace
 
 int CellScale::coarsest_level(Vec3 p) const {
-    const float outside = core.empty() ? 0 : distance_outside(core, p) / std::max(core.radius(), 1e-20f);
+    if (core.empty()) return 0;
+    const float outside2 = square_outside(core, p);
+    if (outside2 == 0) return 0;  // most
+    const float outside = std::sqrt(outside2) / std::max(core.radius(), 1e-20f);
     if (outside < 1) return 0;
     return std::max(-static_cast<int>(std::log2(1 + outside)), coarsest);
 }
 
 float CellScale::size_of(int level) const { return std::ldexp(size, -level); }
 
-FieldCells::FieldCells(const CellScale& scale) : scale_(scale), slots_(1 << 12) {}
+FieldCells::FieldCells(const CellScale& scale) : scale_(scale), slots_(1 << 12) {
+    for (std::size_t i = 0; i < levels; ++i)
+        cells_per_metre_[i] = 1 / scale_.size_of(static_cast<int>(i) + lowest_level);
+}
 
 FieldCells::Index FieldCells::index_of(Vec3 p, int level) const {
-    const float inverse = 1 / scale_.size_of(level);
+    const float inverse = cells_per_metre_[level_index(level)];
     const auto cell = [&](float x) {
         return static_cast<std::int32_t>(std::clamp(std::floor(x * inverse), static_cast<float>(-most_cells),
                                                     static_cast<float>(most_cells)));
@@ -51,9 +60,11 @@ std::uint64_t FieldCells::key_of(const Index& i) {
            | static_cast<std::uint64_t>(i.level - coarsest + coarser + 1);
 }
 
+/// Four cells in a row along x are neighbours in memory, too: who asks for one will ask for the others.
 std::size_t FieldCells::slot_of(std::uint64_t key) const {
+    constexpr std::uint64_t in_row = std::uint64_t{3} << 44;
     const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = mix(key) & mask;
+    std::size_t slot = (mix(key & ~in_row) << 2 | (key & in_row) >> 44) & mask;
     while (slots_[slot].key != 0 && slots_[slot].key != key) slot = (slot + 1) & mask;
     return slot;
 }
@@ -66,7 +77,7 @@ ElementId FieldCells::match(const Index& index, Vec3 position, Vec3 normal) cons
         const FieldElement& element = elements_[e];
         const float cosine = dot(element.normal, normal);
         const float height = std::abs(dot(position - element.position, element.normal));
-        const float fine_size = element.coarse ? std::ldexp(element.size, -coarser) : element.size;
+        const float fine_size = element.coarse ? element.size * finer_size : element.size;
         if (cosine <= best_cosine || height > most_height * fine_size) continue;
         best = e;
         best_cosine = cosine;
@@ -114,6 +125,7 @@ ElementId FieldCells::make(Vec3 position, Vec3 normal, float offset, int level) 
     element.offset = offset;
     element.level = static_cast<std::int8_t>(level);
     elements_.push_back(element);
+    used_levels_[level_index(level)] = true;
     const std::uint64_t key = key_of(index_of(position, level));
     Slot& slot = slots_[slot_of(key)];
     if (slot.key == 0) {

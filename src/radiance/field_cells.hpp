@@ -2,6 +2,7 @@
 // The elements of a radiance field by where they are: cubic cells of several sizes, found by hashing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -89,6 +90,9 @@ class FieldCells {
                         use(e);
     }
 
+    /// Whether any cell of this level holds an element.
+    [[nodiscard]] bool has_level(int level) const { return used_levels_[level_index(level)]; }
+
     [[nodiscard]] std::size_t bytes() const;
 
   private:
@@ -105,6 +109,12 @@ class FieldCells {
         bool missing = false;  // whether one is
     };
 
+    static constexpr int lowest_level = -24;
+    static constexpr std::size_t levels = 48;
+    [[nodiscard]] static std::size_t level_index(int level) {
+        return static_cast<std::size_t>(level - lowest_level);
+    }
+
     [[nodiscard]] Index index_of(Vec3 position, int level) const;
     [[nodiscard]] static std::uint64_t key_of(const Index& index);
     [[nodiscard]] std::size_t slot_of(std::uint64_t key) const;
@@ -117,6 +127,8 @@ class FieldCells {
     void grow();
 
     CellScale scale_;
+    std::array<float, levels> cells_per_metre_;  // by level
+    std::array<bool, levels> used_levels_{};
     std::vector<FieldElement> elements_;
     std::vector<ElementId> next_;  // in the same cell
     std::vector<Slot> slots_;      // a power of two, open addressing

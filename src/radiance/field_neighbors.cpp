@@ -58,12 +58,14 @@ FieldNeighbors::List find_neighbors(const Transport& t, const FieldCells& cells,
     const FieldElement& e = cells.elements()[id];
     const Vec3 middle = cells.middle_of(e);
     std::vector<Candidate> candidates;
-    for (int level = e.level - 2; level <= e.level + 2; ++level)
+    for (int level = e.level - 2; level <= e.level + 2; ++level) {
+        if (!cells.has_level(level)) continue;
         cells.around(e.position, level, [&](ElementId other) {
             const FieldElement& o = cells.elements()[other];
             if (other != id && !replaced(o, e) && belong_together(e, o) && reaches(o, e, middle))
                 candidates.push_back({length_squared(o.position - e.position), other});
         });
+    }
     std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
         return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : a.id < b.id;
     });
@@ -88,6 +90,13 @@ float weight_at(const FieldElement& e, Vec3 position, float ramp) {
     return axis(way.x) * axis(way.y) * axis(way.z);
 }
 
+/// How far the light of `b` is that of `a`, by distance and normals.
+float likeness(const FieldElement& a, const FieldElement& b) {
+    const float distance = length(b.position - a.position) / (2 * std::max(a.size, b.size));
+    const float turned = (1 - dot(a.normal, b.normal)) / (1 - least_cosine);
+    return std::max(0.0f, 1 - distance) * std::max(0.0f, 1 - turned);
+}
+
 }  // namespace
 
 FieldNeighbors::FieldNeighbors(const Transport& t, const FieldCells& cells, int threads, RayCounts& rays)
@@ -99,6 +108,24 @@ FieldNeighbors::FieldNeighbors(const Transport& t, const FieldCells& cells, int 
             lists_[e] = find_neighbors(t, cells, static_cast<ElementId>(e), counts);
         const std::lock_guard lock(mutex);
         rays.add(counts);
+    });
+}
+
+void FieldNeighbors::smooth(const NoisyLight& noisy, int threads, FieldCells& cells) const {
+    std::vector<FieldElement>& elements = cells.elements();
+    parallel_for(threads, (lists_.size() + run - 1) / run, [&](std::size_t piece) {
+        for (std::size_t i = piece * run; i < std::min((piece + 1) * run, lists_.size()); ++i) {
+            IrradianceVector mean = noisy.light[i];
+            float weights = 1;
+            for (const ElementId id : lists_[i]) {
+                if (id == no_element) break;
+                const float weight = noisy.smoothness[i] * likeness(elements[i], elements[id]);
+                mean.add(noisy.light[id], weight);
+                weights += weight;
+            }
+            elements[i].irradiance.add(mean, 1 / weights);
+            elements[i].irradiance.add(noisy.light[i], -1);
+        }
     });
 }
 

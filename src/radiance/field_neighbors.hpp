@@ -12,6 +12,12 @@
 
 namespace relumine {
 
+/// What elements' rays have found, with the noise that few rays leave.
+struct NoisyLight {
+    std::vector<IrradianceVector> light;  // by element, part of its irradiance
+    std::vector<float> smoothness;        // in [0, 1]: how far that around it may stand for it
+};
+
 /// For every element the nearest ones that lie in its plane and that it sees.
 class FieldNeighbors {
   public:
@@ -25,6 +31,9 @@ class FieldNeighbors {
     /// that fall over the borders of their cells.
     [[nodiscard]] Spectrum irradiance(const FieldCells& cells, ElementId home, Vec3 position,
                                       Vec3 normal) const;
+
+    /// Takes the noise out of a part of the elements' light: it becomes a mean over the elements around.
+    void smooth(const NoisyLight& noisy, int threads, FieldCells& cells) const;
 
     [[nodiscard]] const List& of(ElementId element) const { return lists_[element]; }
     [[nodiscard]] std::size_t bytes() const { return lists_.capacity() * sizeof(List); }

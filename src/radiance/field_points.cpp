@@ -82,6 +82,11 @@ void PointReservoirs::offer(ElementId id, const StartPoint& point) {
     if (place < most) r.points[place] = point;
 }
 
+void PointReservoirs::set(ElementId id, std::vector<StartPoint> points) {
+    if (id >= reservoirs_.size()) reservoirs_.resize(id + 1);
+    reservoirs_[id].points = std::move(points);
+}
+
 std::span<const StartPoint> PointReservoirs::of(ElementId id) const {
     return id < reservoirs_.size() ? std::span<const StartPoint>(reservoirs_[id].points)
                                    : std::span<const StartPoint>();

@@ -24,6 +24,8 @@ class PointReservoirs {
     static constexpr std::size_t most = 16;
 
     void offer(ElementId id, const StartPoint& point);
+    /// Instead of what was offered.
+    void set(ElementId id, std::vector<StartPoint> points);
     [[nodiscard]] std::span<const StartPoint> of(ElementId id) const;
 
   private:

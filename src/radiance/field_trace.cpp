@@ -2,6 +2,7 @@
 // Rays of elements.
 #include "radiance/field_trace.hpp"
 
+#include "base/sample_packet_kernel.hpp"
 #include "radiance/direct_light.hpp"
 #include "radiance/lobe_walk.hpp"
 #include "shading/material.hpp"
@@ -10,8 +11,8 @@
 namespace relumine {
 namespace {
 
-/// A light's direction turns the irradiance vector no farther than from this cosine.
-constexpr float least_tilt_cosine = 0.2f;
+/// The error that a few light samples may leave, of the mean over elements.
+constexpr double most_light_error = 0.03;
 
 /// Nearest distance that counts, metres: a bound for the logarithm.
 constexpr float least_distance = 1e-6f;
@@ -49,7 +50,7 @@ Vec3 turned(Vec3 direction, Vec3 from, Vec3 normal) {
 /// Lobes take part in what is left of the bounces.
 LobeWalk lobe_walk(const FieldSettings& settings) {
     constexpr std::uint32_t most = unlimited_depth - 1;
-    return {.max_depth = std::min(settings.bounces, most) + 1};
+    return {.max_depth = std::min(settings.bounces, most) + 1, .sample_lights = settings.light_samples > 0};
 }
 
 /// How far the means of samples differ between an element's points, beyond what samples at one point do.
@@ -85,68 +86,143 @@ class Contrast {
     std::vector<Point> points_;
 };
 
+/// The rays of an element, all at once.
+struct ElementRays {
+    std::vector<SampleStream> streams;
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+
+    [[nodiscard]] std::size_t size() const { return rays.size(); }
+};
+
+/// Streams and their numbers for the direction, by the part of the hemisphere that these stand for: rays of a
+/// packet go together, and what follows finds triangles and cells in the processor's caches.
+struct DirectedStreams {
+    std::vector<SampleStream> streams;
+    std::vector<Point2> numbers;
+
+    explicit DirectedStreams(std::span<const SampleStream> drawn)
+        : streams(drawn.size()), numbers(drawn.size()) {
+        std::vector<Point2> u;
+        for (const SampleStream& s : drawn) u.push_back(s.next2(Dim::direction));
+        std::array<std::uint32_t, cells + 1> next{};
+        for (const Point2 p : u) ++next[cell_of(p) + 1];
+        for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const std::uint32_t place = next[cell_of(u[i])]++;
+            streams[place] = drawn[i];
+            numbers[place] = u[i];
+        }
+    }
+
+  private:
+    static constexpr std::size_t cells = 16;
+    /// Four by four, in Morton order.
+    static std::size_t cell_of(Point2 p) {
+        constexpr std::array<std::uint8_t, 4> spread{0, 1, 4, 5};
+        const auto quarter = [](float x) { return static_cast<std::size_t>(std::min(4 * x, 3.0f)); };
+        return static_cast<std::size_t>(spread[quarter(p.x)] | spread[quarter(p.y)] << 1);
+    }
+};
+
+void trace(const Transport& t, ElementRays& all, RayCounts& counts) {
+    counts.add(RayPurpose::field, all.size());
+    all.hits.resize(all.size());
+    for (std::size_t first = 0; first < all.size(); first += packet_size) {
+        const std::size_t count = std::min(packet_size, all.size() - first);
+        RayLanes rays;
+        HitLanes hits;
+        rays.t_max.fill(-1);
+        for (std::size_t i = 0; i < count; ++i) rays.set(i, all.rays[first + i]);
+        t.tracer.closest_hits(rays, hits, Coherence::incoherent);
+        for (std::size_t i = 0; i < count; ++i)
+            all.hits[first + i] = hits.instance[i] == no_instance ? Hit{} : hits[i];
+    }
+}
+
+/// Draws and traces `count` rays over the hemispheres of the points.
+ElementRays trace_rays(const Transport& t, std::span<const StartPoint> points, ElementId id, int count,
+                       std::uint64_t seed, RayCounts& counts) {
+    std::vector<SampleStream> drawn;
+    for (int i = 0; i < count; ++i)
+        drawn.push_back(element_stream(seed, id, static_cast<std::uint32_t>(i), count));
+    DirectedStreams directed(drawn);
+    ElementRays all;
+    all.rays.reserve(drawn.size());
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+        const SampleStream& stream = directed.streams[i];
+        const StartPoint& p = points[point_of(points, static_cast<int>(stream.index), count)];
+        const WorldDir direction = frame_around(p.normal).to_world(cosine_hemisphere(directed.numbers[i]));
+        all.rays.push_back({p.position + p.normal * p.offset, direction, infinity,
+                            t.tracer.asks_for_opacity() ? stream.bits(Dim::opacity, 2) : 0u});
+    }
+    all.streams = std::move(directed.streams);
+    trace(t, all, counts);
+    return all;
+}
+
+/// How these rays walk on.
+std::vector<PathState> paths_of(const Transport& t, const ElementRays& all) {
+    std::vector<PathState> paths;
+    paths.reserve(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool alive{all.hits[i]};
+        paths.push_back({all.rays[i], all.hits[i], 1, 1, Spectrum{1}, 1, 0, false, alive});
+        tint(t, paths.back());
+    }
+    return paths;
+}
+
 class ElementTracer {
   public:
-    ElementTracer(const Transport& t, Vec3 normal, std::span<const StartPoint> points, ElementId id,
-                  const FieldSettings& settings, RayCounts& rays)
-        : t_(t), normal_(normal), points_(points), id_(id), settings_(settings), counts_(rays) {}
+    ElementTracer(const Transport& t, Vec3 normal, std::span<const StartPoint> points, int count,
+                  const FieldSettings& settings)
+        : t_(t), normal_(normal), points_(points), count_(count), settings_(settings) {}
 
-    ElementView run() {
-        for (int first = 0; first < settings_.rays; first += static_cast<int>(packet_size)) trace(first);
-        if (seen_ > 0) view_.distance = std::exp(log_distances_ / static_cast<float>(seen_));
-        sample_lights();
+    ElementView run(const ElementRays& all, RayCounts& counts) {
+        std::vector<PathState> paths = paths_of(t_, all);
+        for (std::size_t i = 0; i < all.size(); ++i) add_emission(all, i, paths[i]);
+        std::vector<Spectrum> found(all.size());
+        view_.landings.reserve(all.size() + all.size() / 4);
+        walk_lobes(t_, paths, lobe_walk(settings_), all.streams, found, counts,
+                   [&](std::size_t i, const DiffuseVertex& at) {
+                       const SurfacePoint& p = at.vertex.point;
+                       view_.landings.push_back({p.position, p.geometric_normal, p.offset, all.hits[i].t,
+                                                 at.weight, direction(all, i),
+                                                 static_cast<std::uint16_t>(all.streams[i].index)});
+                       return true;
+                   });
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (!is_black(found[i]) && is_finite(found[i])) add_found(direction(all, i), found[i]);
         return std::move(view_);
     }
 
   private:
-    void trace(int first) {
-        std::array<Ray, packet_size> rays;
-        std::array<Hit, packet_size> hits;
-        std::array<const StartPoint*, packet_size> starts;
-        StreamPacket streams;
-        for (std::size_t lane = 0; lane < packet_size; ++lane) {
-            const int i = first + static_cast<int>(lane);
-            const StartPoint& p = points_[point_of(points_, i, settings_.rays)];
-            streams[lane] =
-                element_stream(settings_.seed, id_, static_cast<std::uint32_t>(i), settings_.rays);
-            const WorldDir direction = cosine_direction(p.normal, streams[lane]);
-            rays[lane] = {p.position + p.normal * p.offset, direction, infinity,
-                          streams[lane].bits(Dim::opacity, 2)};
-            starts[lane] = &p;
-        }
-        counts_.add(RayPurpose::field, packet_size);
-        t_.tracer.closest_hits(rays, hits, Coherence::incoherent);
-        for (std::size_t lane = 0; lane < packet_size; ++lane)
-            follow(*starts[lane], rays[lane], hits[lane], streams[lane]);
+    [[nodiscard]] const StartPoint& start(const ElementRays& all, std::size_t i) const {
+        return points_[point_of(points_, static_cast<int>(all.streams[i].index), count_)];
+    }
+    [[nodiscard]] Vec3 direction(const ElementRays& all, std::size_t i) const {
+        return turned(all.rays[i].direction.v, start(all, i).normal, normal_);
+    }
+    [[nodiscard]] float share() const { return pi / static_cast<float>(count_); }
+
+    void add_emission(const ElementRays& all, std::size_t i, const PathState& path) {
+        const Spectrum emission = path.throughput * first_emission(t_, path);
+        if (is_black(emission)) return;
+        const Spectrum irradiance = emission * (share_of_light(start(all, i), path) * share());
+        if (!is_finite(irradiance)) return;
+        const Vec3 from = direction(all, i);
+        add_arriving(view_.light, normal_, from, irradiance);
+        if (settings_.arrivals && !path.hit) view_.sky.push_back({from, luminance(irradiance)});
     }
 
-    void follow(const StartPoint& start, const Ray& ray, const Hit& hit, const SampleStream& stream) {
-        PathState path{ray, hit, 1, 1, Spectrum{1}, 1, 0, false, static_cast<bool>(hit)};
-        tint(t_, path);
-        const Vec3 direction = turned(ray.direction.v, start.normal, normal_);
-        Spectrum emission = path.throughput * first_emission(t_, path), found;
-        if (!is_black(emission)) emission *= share_of_light(start, path);
-        if (hit) {
-            log_distances_ += std::log(std::max(hit.t, least_distance));
-            ++seen_;
-            walk_lobes(t_, path, lobe_walk(settings_), stream, found, counts_, [&](const DiffuseVertex& at) {
-                const SurfacePoint& p = at.vertex.point;
-                view_.landings.push_back({p.position, p.geometric_normal, p.offset, hit.t, at.weight,
-                                          direction, static_cast<std::uint16_t>(stream.index)});
-                return true;
-            });
-        }
-        if (!is_finite(emission + found)) return;
-        const float share = pi / static_cast<float>(settings_.rays);
-        add_arriving(view_.light, normal_, direction, (emission + found) * share);
-        if (settings_.arrivals && !hit && !is_black(emission))
-            view_.sky.push_back({direction, luminance(emission) * share});
-        if (luminance(found) > 0) view_.finds.push_back(luminance(found));
-        if (luminance(found) > strongest_) {
-            strongest_ = luminance(found);
-            view_.strongest = {};
-            add_arriving(view_.strongest, normal_, direction, found * share);
-        }
+    void add_found(Vec3 from, Spectrum found) {
+        add_arriving(view_.light, normal_, from, found * share());
+        view_.finds.push_back(luminance(found));
+        if (luminance(found) <= strongest_) return;
+        strongest_ = luminance(found);
+        view_.strongest = {};
+        add_arriving(view_.strongest, normal_, from, found * share());
     }
 
     /// The balance heuristic against light samples.
@@ -156,37 +232,129 @@ class ElementTracer {
         return here / (here + static_cast<float>(settings_.light_samples) * light_density(t_, path));
     }
 
-    void sample_lights() {
-        if (t_.lights.empty()) return;
-        Contrast contrast(points_.size());
-        for (int i = 0; i < settings_.light_samples; ++i) {
-            const SampleStream stream =
-                element_stream(hash(settings_.seed, 0x6c6967687473), id_, static_cast<std::uint32_t>(i),
-                               settings_.light_samples);
-            const std::size_t point = point_of(points_, i, settings_.light_samples);
-            contrast.add(point, luminance(sample_light(points_[point], stream)));
+    const Transport& t_;
+    const Vec3 normal_;
+    std::span<const StartPoint> points_;
+    const int count_;  // of rays
+    const FieldSettings& settings_;
+    ElementView view_;
+    float strongest_ = 0;  // radiance of view_.strongest
+};
+
+Ray shadow_ray(const StartPoint& start, const LightSample& light, std::uint32_t opacity_seed) {
+    SurfacePoint p;
+    p.position = start.position;
+    p.geometric_normal = start.normal;
+    p.offset = start.offset;
+    return relumine::shadow_ray(p, light, opacity_seed);
+}
+
+LightSample light_in(const LightLanes& lights, std::size_t lane) {
+    return {{lights.w_in[lane]},   lights.target[lane], lights.distance[lane],
+            lights.radiance[lane], lights.pdf[lane],    lights.delta[lane] != 0};
+}
+
+/// Light samples at an element's points.
+class LightSurvey {
+  public:
+    LightSurvey(const Transport& t, Vec3 normal, std::span<const StartPoint> points, ElementId id,
+                const FieldSettings& settings, RayCounts& rays)
+        : t_(t),
+          normal_(normal),
+          points_(points),
+          id_(id),
+          settings_(settings),
+          counts_(rays),
+          contrast_(points.size()) {}
+
+    /// A packet of samples tells whether all find the same, as in full shadow; then they are enough.
+    void run(ElementSurvey& survey, double mean_light) {
+        const auto few = static_cast<int>(packet_size);
+        if (settings_.light_samples > few) {
+            sample(0, few, 0x70696c6f74);
+            const float times = static_cast<float>(settings_.light_samples) / static_cast<float>(few);
+            if (times * sum_error() <= most_light_error * mean_light) {
+                survey.light.add(light_, times);
+                return;
+            }
+            contrast_ = Contrast(points_.size());
+            light_ = {};
         }
-        view_.contrast = contrast.over_noise() * static_cast<float>(settings_.light_samples);
+        for (int first = 0; first < settings_.light_samples; first += few)
+            sample(first, settings_.light_samples, 0x6c6967687473);
+        survey.light = light_;
+        survey.contrast = contrast_.over_noise() * static_cast<float>(settings_.light_samples);
     }
 
-    /// Adds a sample's share of the irradiance, and returns it.
-    Spectrum sample_light(const StartPoint& start, const SampleStream& stream) {
-        const auto light = t_.lights.sample(start.position, stream.next2(Dim::light_point));
-        if (!light || !(light->pdf > 0)) return {};
-        const float cosine = dot(light->w_in.v, start.normal);
-        if (cosine <= 0) return {};
-        SurfacePoint p;
-        p.position = start.position;
-        p.geometric_normal = start.normal;
-        p.offset = start.offset;
-        const Spectrum passed = passed_light(t_, p, *light, stream.bits(Dim::opacity, 1), counts_);
-        if (is_black(passed)) return {};
-        const float here = static_cast<float>(settings_.light_samples) * light->pdf;
+  private:
+    /// The standard error of the sum of what a packet's samples find.
+    [[nodiscard]] float sum_error() const {
+        constexpr auto n = static_cast<float>(packet_size);
+        return std::sqrt(std::max(0.0f, squares_ - sqr(sum_) / n) * n / (n - 1));
+    }
+
+    /// Sixteen of `count` samples, from `first` on.
+    void sample(int first, int count, std::uint64_t purpose) {
+        StreamPacket streams;
+        std::array<std::size_t, packet_size> points;
+        Vec3Lanes from;
+        LaneMask all;
+        all.fill(-1);
+        for (std::size_t lane = 0; lane < packet_size; ++lane) {
+            const int i = first + static_cast<int>(lane);
+            streams[lane] =
+                element_stream(hash(settings_.seed, purpose), id_, static_cast<std::uint32_t>(i), count);
+            points[lane] = point_of(points_, i, count);
+            from.set(lane, points_[points[lane]].position);
+        }
+        Lanes<float> x, y;
+        SamplePacket(streams).next2(Dim::light_point, 0, x, y);
+        LightLanes lights{};
+        t_.lights.sample(from, x, y, all, lights);
+        propose(points, streams, lights);
+    }
+
+    /// Traces rays to those of the lights that may shine on their points.
+    void propose(const std::array<std::size_t, packet_size>& points, const StreamPacket& streams,
+                 const LightLanes& lights) {
+        RayLanes rays;
+        rays.t_max.fill(-1);
+        std::array<Proposal, packet_size> proposals;
+        std::size_t count = 0;
+        for (std::size_t lane = 0; lane < packet_size; ++lane) {
+            const std::size_t point = points[lane];
+            const float cosine = dot(lights.w_in[lane], points_[point].normal);
+            if (lights.drawn[lane] == 0 || !(lights.pdf[lane] > 0) || !(cosine > 0)) {
+                contrast_.add(point, 0);
+                continue;
+            }
+            rays.set(count,
+                     shadow_ray(points_[point], light_in(lights, lane), streams[lane].bits(Dim::opacity, 1)));
+            proposals[count++] = {lane, point, cosine};
+        }
+        counts_.add(RayPurpose::shadow, count);
+        SpectrumLanes passed;
+        passed_light(t_.tracer, rays, count, passed);
+        for (std::size_t i = 0; i < count; ++i) add(proposals[i], lights, passed[i]);
+    }
+
+    struct Proposal {
+        std::size_t lane, point;
+        float cosine;
+    };
+
+    /// Adds a sample's share of the irradiance.
+    void add(const Proposal& p, const LightLanes& lights, Spectrum passed) {
+        const float here = static_cast<float>(settings_.light_samples) * lights.pdf[p.lane];
         const float density =
-            light->delta ? here : here + static_cast<float>(settings_.rays) * inv_pi * cosine;
-        const Spectrum irradiance = passed * light->radiance * (cosine / density);
-        add_arriving(view_.light, normal_, turned(light->w_in.v, start.normal, normal_), irradiance);
-        return irradiance;
+            lights.delta[p.lane] != 0 ? here : here + static_cast<float>(settings_.rays) * inv_pi * p.cosine;
+        const Spectrum irradiance = passed * lights.radiance[p.lane] * (p.cosine / density);
+        contrast_.add(p.point, luminance(irradiance));
+        sum_ += luminance(irradiance);
+        squares_ += sqr(luminance(irradiance));
+        if (!is_black(irradiance))
+            add_arriving(light_, normal_, turned(lights.w_in[p.lane], points_[p.point].normal, normal_),
+                         irradiance);
     }
 
     const Transport& t_;
@@ -195,11 +363,21 @@ class ElementTracer {
     ElementId id_;
     const FieldSettings& settings_;
     RayCounts& counts_;
-    ElementView view_;
-    float strongest_ = 0;  // radiance of view_.strongest
-    float log_distances_ = 0;
-    int seen_ = 0;
+    Contrast contrast_;
+    IrradianceVector light_;
+    float sum_ = 0, squares_ = 0;  // of what samples find
 };
+
+/// The geometric mean of distances to what is seen.
+float middle_distance(std::span<const Hit> hits) {
+    float sum = 0, count = 0;
+    for (const Hit& hit : hits) {
+        if (!hit) continue;
+        sum += std::log(std::max(hit.t, least_distance));
+        count += 1;
+    }
+    return count > 0 ? std::exp(sum / count) : infinity;
+}
 
 }  // namespace
 
@@ -213,9 +391,21 @@ void add_arriving(IrradianceVector& vector, Vec3 normal, Vec3 direction, Spectru
     vector.add(normal + along / std::max(cosine, least_tilt_cosine), irradiance);
 }
 
+ElementSurvey survey_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
+                             ElementId id, double mean_light, const FieldSettings& settings,
+                             RayCounts& rays) {
+    ElementSurvey survey;
+    if (!t.lights.empty()) LightSurvey(t, normal, points, id, settings, rays).run(survey, mean_light);
+    const std::uint64_t seed = hash(settings.seed, 0x64697374);
+    survey.distance =
+        middle_distance(trace_rays(t, points, id, static_cast<int>(packet_size), seed, rays).hits);
+    return survey;
+}
+
 ElementView trace_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points, ElementId id,
-                          const FieldSettings& settings, RayCounts& rays) {
-    return ElementTracer(t, normal, points, id, settings, rays).run();
+                          int count, const FieldSettings& settings, RayCounts& rays) {
+    const ElementRays all = trace_rays(t, points, id, count, settings.seed, rays);
+    return ElementTracer(t, normal, points, count, settings).run(all, rays);
 }
 
 namespace {
@@ -223,73 +413,67 @@ namespace {
 class Guide {
   public:
     Guide(const Transport& t, Vec3 normal, std::span<const StartPoint> points, const BrightCones& cones,
-          ElementId id, const FieldSettings& settings, RayCounts& rays)
-        : t_(t), normal_(normal), points_(points), id_(id), settings_(settings), counts_(rays) {
+          ElementId id, int count, const FieldSettings& settings)
+        : t_(t), normal_(normal), points_(points), id_(id), count_(count), settings_(settings) {
         for (const StartPoint& p : points) tables_.push_back(cones.seen_from(p.position, p.normal));
     }
 
-    GuidedView run() {
-        for (int i = 0; i < settings_.rays; ++i) {
-            const std::size_t p = point_of(points_, i, settings_.rays);
+    GuidedView run(RayCounts& counts) {
+        for (int i = 0; i < count_; ++i) {
+            const std::size_t p = point_of(points_, i, count_);
             const SampleStream stream =
-                element_stream(settings_.seed, id_, static_cast<std::uint32_t>(i), settings_.rays);
+                element_stream(settings_.seed, id_, static_cast<std::uint32_t>(i), count_);
             view_.share.push_back(share(p, cosine_direction(points_[p].normal, stream)));
         }
-        for (int first = 0; first < settings_.guided_rays; first += static_cast<int>(packet_size))
-            trace(first);
+        draw(counts);
+        follow(counts);
         return std::move(view_);
     }
 
   private:
     /// What a ray that way counts for, over what it would alone, if drawn by its cosine.
     [[nodiscard]] float share(std::size_t point, WorldDir direction) const {
-        const float here =
-            static_cast<float>(settings_.rays) * inv_pi * dot(direction.v, points_[point].normal);
+        const float here = static_cast<float>(count_) * inv_pi * dot(direction.v, points_[point].normal);
         const BrightCones::Table& table = tables_[point];
         return here / (here + static_cast<float>(settings_.guided_rays) * pdf(table, direction));
     }
 
-    void trace(int first) {
-        std::array<Ray, packet_size> rays;
-        std::array<Hit, packet_size> hits;
-        for (std::size_t lane = 0; lane < packet_size; ++lane) {
-            rays[lane].t_max = -1;
-            const int i = first + static_cast<int>(lane);
+    void draw(RayCounts& counts) {
+        for (int i = 0; i < settings_.guided_rays; ++i) {
             const std::size_t p = point_of(points_, i, settings_.guided_rays);
             if (tables_[p].count == 0) continue;
-            const SampleStream stream = stream_of(i);
+            const SampleStream stream = element_stream(hash(settings_.seed, 0x6775696465), id_,
+                                                       static_cast<std::uint32_t>(i), settings_.guided_rays);
             const WorldDir direction = sample(tables_[p], stream.next2(Dim::direction)).direction;
             if (!(dot(direction.v, points_[p].normal) > 0)) continue;
-            counts_.add(RayPurpose::field);
-            rays[lane] = {points_[p].position + points_[p].normal * points_[p].offset, direction, infinity,
-                          stream.bits(Dim::opacity, 2)};
+            rays_.streams.push_back(stream);
+            rays_.rays.push_back({points_[p].position + points_[p].normal * points_[p].offset, direction,
+                                  infinity, stream.bits(Dim::opacity, 2)});
         }
-        t_.tracer.closest_hits(rays, hits, Coherence::incoherent);
-        for (std::size_t lane = 0; lane < packet_size; ++lane)
-            if (hits[lane]) follow(first + static_cast<int>(lane), rays[lane], hits[lane]);
+        trace(t_, rays_, counts);
     }
 
-    [[nodiscard]] SampleStream stream_of(int i) const {
-        return element_stream(hash(settings_.seed, 0x6775696465), id_, static_cast<std::uint32_t>(i),
-                              settings_.guided_rays);
+    void follow(RayCounts& counts) {
+        std::vector<PathState> paths = paths_of(t_, rays_);
+        std::vector<Spectrum> found(paths.size());  // the rays of trace_element bring that
+        walk_lobes(t_, paths, lobe_walk(settings_), rays_.streams, found, counts,
+                   [&](std::size_t i, const DiffuseVertex& at) {
+                       land(i, at);
+                       return true;
+                   });
     }
 
-    void follow(int i, const Ray& ray, const Hit& hit) {
-        const std::size_t p = point_of(points_, i, settings_.guided_rays);
-        // A ray of either kind brings L · cos θ / (n p_cos + m p_guide); links count it in units of L · π /
-        // n.
-        const float weight = share(p, ray.direction);
-        const Vec3 direction = turned(ray.direction.v, points_[p].normal, normal_);
-        Spectrum found;  // the rays of trace_element bring that
-        PathState path{ray, hit, 1, 1, Spectrum{1}, 1, 0, false, true};
-        tint(t_, path);
-        walk_lobes(
-            t_, path, lobe_walk(settings_), stream_of(i), found, counts_, [&](const DiffuseVertex& at) {
-                const SurfacePoint& s = at.vertex.point;
-                view_.landings.push_back({s.position, s.geometric_normal, s.offset, hit.t, at.weight * weight,
-                                          direction, static_cast<std::uint16_t>(settings_.rays + i)});
-                return true;
-            });
+    /// A ray of either kind brings L · cos θ / (n p_cos + m p_guide); landings count it in units of L · π /
+    /// n.
+    void land(std::size_t i, const DiffuseVertex& at) {
+        const Ray& ray = rays_.rays[i];
+        const auto drawn = static_cast<int>(rays_.streams[i].index);
+        const std::size_t p = point_of(points_, drawn, settings_.guided_rays);
+        const SurfacePoint& s = at.vertex.point;
+        view_.landings.push_back({s.position, s.geometric_normal, s.offset, rays_.hits[i].t,
+                                  at.weight * share(p, ray.direction),
+                                  turned(ray.direction.v, points_[p].normal, normal_),
+                                  static_cast<std::uint16_t>(settings_.rays + drawn)});
     }
 
     const Transport& t_;
@@ -297,17 +481,18 @@ class Guide {
     std::span<const StartPoint> points_;
     std::vector<BrightCones::Table> tables_;  // by point
     ElementId id_;
+    const int count_;  // of rays over all directions
     const FieldSettings& settings_;
-    RayCounts& counts_;
+    ElementRays rays_;
     GuidedView view_;
 };
 
 }  // namespace
 
 GuidedView guide_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
-                         const BrightCones& cones, ElementId id, const FieldSettings& settings,
+                         const BrightCones& cones, ElementId id, int count, const FieldSettings& settings,
                          RayCounts& rays) {
-    return Guide(t, normal, points, cones, id, settings, rays).run();
+    return Guide(t, normal, points, cones, id, count, settings).run(rays);
 }
 
 }  // namespace relumine

@@ -20,27 +20,41 @@ struct Landing {
     std::uint16_t ray = 0;
 };
 
+/// What is known of an element before its rays are traced.
+struct ElementSurvey {
+    IrradianceVector light;     // that samples of the lights bring
+    float contrast = 0;         // W·m⁻²: how far that differs between the points, over noise
+    float distance = infinity;  // metres, the geometric mean of what is seen
+};
+
 /// What an element's rays have found.
 struct ElementView {
-    std::vector<Landing> landings;  // in order of rays
-    std::vector<Sight> sky;         // where the settings want arrivals
-    IrradianceVector light;         // what arrives straight from lights or through lobes alone
-    IrradianceVector strongest;     // part of it: the most that a single ray found along lobes
-    std::vector<float> finds;       // luminance that rays found along lobes, where that is any
-    float distance = infinity;      // metres, the geometric mean of what is seen
-    float contrast = 0;  // W·m⁻²: how far what the points receive straight from lights differs, over noise
+    std::vector<Landing> landings;
+    std::vector<Sight> sky;      // where the settings want arrivals
+    IrradianceVector light;      // what arrives straight from lights, less light samples, or through lobes
+    IrradianceVector strongest;  // part of it: the most that a single ray found along lobes
+    std::vector<float> finds;    // luminance that rays found along lobes, where that is any
 };
 
 /// The random numbers of a ray.
 [[nodiscard]] SampleStream element_stream(std::uint64_t seed, ElementId element, std::uint32_t ray, int rays);
 
+/// A light's direction turns the irradiance vector no farther than from this cosine.
+inline constexpr float least_tilt_cosine = 0.2f;
+
 /// Adds light from `direction` that gives `irradiance` on the surface of this normal.
 void add_arriving(IrradianceVector& vector, Vec3 normal, Vec3 direction, Spectrum irradiance);
 
-/// Traces rays over the hemispheres of `points` and samples the lights from there, for an element of this
-/// normal.
+/// Samples the lights from `points`, for an element of this normal, and looks how far other surfaces are.
+/// `mean_light`: that elements have on average, W·m⁻².
+[[nodiscard]] ElementSurvey survey_element(const Transport& t, Vec3 normal,
+                                           std::span<const StartPoint> points, ElementId id,
+                                           double mean_light, const FieldSettings& settings, RayCounts& rays);
+
+/// Traces `count` rays over the hemispheres of `points`.
 [[nodiscard]] ElementView trace_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
-                                        ElementId id, const FieldSettings& settings, RayCounts& rays);
+                                        ElementId id, int count, const FieldSettings& settings,
+                                        RayCounts& rays);
 
 /// Rays towards bright elements besides: what cosine-distributed rays seldom meet. The two are weighed by the
 /// balance heuristic [Veach97].
@@ -49,7 +63,7 @@ struct GuidedView {
     std::vector<Landing> landings;  // of the others, weighed; their rays count from settings.rays on
 };
 [[nodiscard]] GuidedView guide_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
-                                       const BrightCones& cones, ElementId id, const FieldSettings& settings,
-                                       RayCounts& rays);
+                                       const BrightCones& cones, ElementId id, int count,
+                                       const FieldSettings& settings, RayCounts& rays);
 
 }  // namespace relumine

@@ -21,19 +21,24 @@ Spectrum emission_met(const Transport& t, PathState path, const SampleStream& st
     return path.throughput * arriving_emission(t, path, &y.point);
 }
 
-/// What the surface at the path's hit reflects: the field's light by diffuse surfaces, found along lobes.
-Spectrum reflected_field(const IncidentRadiance& source, const PathState& path, std::uint32_t limit,
-                         const SampleStream& stream, RayCounts& counts) {
-    Spectrum known, found;
-    walk_lobes(source.transport, path, {limit}, stream, found, counts, [&](const DiffuseVertex& at) {
-        const SurfacePoint& p = at.vertex.point;
-        const auto irradiance = source.field->irradiance(p.position, p.geometric_normal, p.frame.n);
-        if (irradiance) known += at.weight * *irradiance * inv_pi;
-        return irradiance.has_value();
-    });
+/// What the surfaces at the paths' hits reflect: the field's light by diffuse surfaces, found along lobes.
+void add_reflected_field(const IncidentRadiance& source, PathPacket& paths, std::uint32_t limit,
+                         const StreamPacket& streams, RadiancePacket& sums, RayCounts& counts) {
+    std::array<Spectrum, packet_size> known, found;
+    walk_lobes(source.transport, paths, {limit}, streams, found, counts,
+               [&](std::size_t i, const DiffuseVertex& at) {
+                   const SurfacePoint& p = at.vertex.point;
+                   const auto irradiance =
+                       source.field->irradiance(p.position, p.geometric_normal, p.frame.n);
+                   if (irradiance) known[i] += at.weight * *irradiance * inv_pi;
+                   return irradiance.has_value();
+               });
     // One ray of a map stands for many: a rare find would be seen as a dot.
-    const float most = source.field->most_found(), brightness = luminance(found);
-    return known + (brightness > most ? found * (most / brightness) : found);
+    const float most = source.field->most_found();
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        const float brightness = luminance(found[i]);
+        sums[i].indirect = known[i] + (brightness > most ? found[i] * (most / brightness) : found[i]);
+    }
 }
 
 }  // namespace
@@ -60,9 +65,7 @@ RadiancePacket incident_radiance(const IncidentRadiance& source, const std::arra
     }
     if (depth >= limit) return sums;
     if (source.field) {
-        for (std::size_t i = 0; i < packet_size; ++i)
-            if (paths[i].alive)
-                sums[i].indirect = reflected_field(source, paths[i], limit, streams[i], counts);
+        add_reflected_field(source, paths, limit, streams, sums, counts);
         return sums;
     }
     RadiancePacket reflected;

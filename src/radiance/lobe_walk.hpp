@@ -2,6 +2,8 @@
 // Following a ray through glossy reflections, mirrors and glass to the surfaces that reflect it diffusely.
 #pragma once
 
+#include <vector>
+
 #include "radiance/path.hpp"
 
 namespace relumine {
@@ -15,6 +17,7 @@ struct LobeWalk {
     int most_rough = 3;  // of reflections at lobes that are no deltas; further ones count as diffuse
     float eagerness =
         4;  // a lobe that keeps the share a of the light is followed with probability eagerness · a
+    bool sample_lights = true;  // else `found` is of no use
 };
 
 /// Where a part of a path's light comes from a surface that reflects diffusely.
@@ -23,20 +26,44 @@ struct DiffuseVertex {
     Spectrum weight;  // the path's throughput times the directional albedo
 };
 
-/// Follows `path`, whose ray has hit. Calls `use(DiffuseVertex)` at every surface on the way for what it
-/// reflects diffusely, and goes on along its lobes; where `use` says false, because it knows nothing of the
-/// light there, the diffuse part is followed as well. Light that is met after the first surface, and the
-/// lights' own light in lobes, is added to `found`. Unbiased, if `use` is and roughnesses are kept, for the
-/// light that the surface at the path's hit reflects; but for what a caustic map holds for the surface that
-/// the ray has left.
+/// Follows the living of `paths` whose rays have hit. Calls `use(i, DiffuseVertex)` at every surface on the
+/// way of path i for what it reflects diffusely, and goes on along its lobes; where `use` says false, because
+/// it knows nothing of the light there, the diffuse part is followed as well. Light that is met after the
+/// first surface, and the lights' own light in lobes, is added to `found`, by path. Unbiased, if `use` is and
+/// roughnesses are kept, for the light that the surfaces at the paths' hits reflect; but for what a caustic
+/// map holds for the surfaces that the rays have left. The paths go in step, so that their rays are traced as
+/// packets: the same ones must always go together.
 template <typename Use>
-void walk_lobes(const Transport& t, PathState path, const LobeWalk& settings, const SampleStream& stream,
-                Spectrum& found, RayCounts& rays, const Use& use);
+void walk_lobes(const Transport& t, std::span<PathState> paths, const LobeWalk& settings,
+                std::span<const SampleStream> streams, std::span<Spectrum> found, RayCounts& rays,
+                const Use& use);
 
-/// A step of such a walk: light sampling at `vertex`, unless photons have found that light, then a direction
-/// drawn from its BSDF, and its hit.
-void step_along(const Transport& t, PathState& path, const Vertex& vertex, bool photons,
-                const SampleStream& stream, Spectrum& found, RayCounts& rays);
+/// A path that is followed.
+struct Walker {
+    std::uint32_t path;  // which one
+    int rough = 0;       // reflections so far
+    bool photons;        // whether they have come the same way so far
+};
+
+/// Rays of one step of many walks.
+class WalkStep {
+  public:
+    /// Light sampling at `vertex`, if wanted, unless photons have found that light, and a direction drawn
+    /// from its BSDF.
+    void propose(const Transport& t, const Walker& walker, PathState& path, const Vertex& vertex,
+                 bool sample_lights, const SampleStream& stream);
+    /// Adds the lights' light to `found` and takes the walks' paths to their next hits.
+    void trace(const Transport& t, std::span<const Walker> walkers, std::span<PathState> paths,
+               std::span<Spectrum> found, RayCounts& rays);
+
+  private:
+    struct Light {
+        std::uint32_t path;
+        Ray shadow_ray;
+        Spectrum radiance;  // if nothing is in the way
+    };
+    std::vector<Light> lights_;
+};
 
 /// What becomes of a path at a surface: what is diffuse is used, the rest followed.
 struct WalkChoice {
@@ -49,33 +76,61 @@ struct WalkChoice {
 [[nodiscard]] WalkChoice choose(const Vertex& vertex, Spectrum throughput, int rough_so_far,
                                 const LobeWalk& settings);
 
+/// Keeps the walkers that `go_on`, in order.
+template <typename GoOn>
+void keep(std::vector<Walker>& walkers, const GoOn& go_on) {
+    std::size_t kept = 0;
+    for (Walker w : walkers)
+        if (go_on(w)) walkers[kept++] = w;
+    walkers.resize(kept);
+}
+
+/// One step of a walk up to its ray; false where it ends.
 template <typename Use>
-void walk_lobes(const Transport& t, PathState path, const LobeWalk& settings, const SampleStream& stream,
-                Spectrum& found, RayCounts& rays, const Use& use) {
-    constexpr int longest = 64;  // reflections and refractions, for light that is caught between mirrors
-    int rough = 0;
-    bool photons = t.caustics != nullptr;  // whether they have come the same way so far
-    path.count_emission = false;           // at the first hit that is the caller's
-    for (int i = 0; i < longest && path.hit; ++i) {
-        Vertex vertex = make_vertex(t, path, stream);
-        if (path.count_emission && !photons)
-            found += path.throughput * arriving_emission(t, path, &vertex.point);
-        if (path.depth >= settings.max_depth) return;
-        const WalkChoice choice = choose(vertex, path.throughput, rough, settings);
-        const bool known =
-            is_black(choice.diffuse) || use(DiffuseVertex{vertex, path.throughput * choice.diffuse});
-        if (known) {
-            if (!choice.follow || stream.next1(Dim::roulette, path.depth) >= choice.probability) return;
-            path.throughput *= 1 / choice.probability;
-            vertex.bsdf = *choice.follow;
-        }
-        photons = photons && known && choice.caustic;
-        rough += choice.delta ? 0 : 1;
-        step_along(t, path, vertex, photons, stream, found, rays);
-        if (!path.alive) return;
+bool step_lobes(const Transport& t, Walker& walker, PathState& path, const LobeWalk& settings,
+                const SampleStream& stream, Spectrum& found, WalkStep& step, const Use& use) {
+    Vertex vertex = make_vertex(t, path, stream);
+    if (path.count_emission && !walker.photons)
+        found += path.throughput * arriving_emission(t, path, &vertex.point);
+    if (path.depth >= settings.max_depth) return false;
+    const WalkChoice choice = choose(vertex, path.throughput, walker.rough, settings);
+    const bool known =
+        is_black(choice.diffuse) || use(walker.path, DiffuseVertex{vertex, path.throughput * choice.diffuse});
+    if (known) {
+        if (!choice.follow || stream.next1(Dim::roulette, path.depth) >= choice.probability) return false;
+        path.throughput *= 1 / choice.probability;
+        vertex.bsdf = *choice.follow;
     }
-    if (!path.hit && path.count_emission && !photons)
-        found += path.throughput * arriving_emission(t, path, nullptr);
+    walker.photons = walker.photons && known && choice.caustic;
+    walker.rough += choice.delta ? 0 : 1;
+    step.propose(t, walker, path, vertex, settings.sample_lights, stream);
+    return true;
+}
+
+template <typename Use>
+void walk_lobes(const Transport& t, std::span<PathState> paths, const LobeWalk& settings,
+                std::span<const SampleStream> streams, std::span<Spectrum> found, RayCounts& rays,
+                const Use& use) {
+    constexpr int longest = 64;  // reflections and refractions, for light that is caught between mirrors
+    std::vector<Walker> walkers;
+    walkers.reserve(paths.size());
+    for (std::uint32_t i = 0; i < paths.size(); ++i) {
+        paths[i].count_emission = false;  // at the first hit that is the caller's
+        if (paths[i].alive && paths[i].hit) walkers.push_back({i, 0, t.caustics != nullptr});
+    }
+    WalkStep step;
+    for (int i = 0; i < longest && !walkers.empty(); ++i) {
+        keep(walkers, [&](Walker& w) {
+            return step_lobes(t, w, paths[w.path], settings, streams[w.path], found[w.path], step, use);
+        });
+        step.trace(t, walkers, paths, found, rays);
+        keep(walkers, [&](const Walker& w) {
+            const PathState& path = paths[w.path];
+            if (path.alive && !path.hit && !w.photons)
+                found[w.path] += path.throughput * arriving_emission(t, path, nullptr);
+            return path.alive && path.hit;
+        });
+    }
 }
 
 }  // namespace relumine

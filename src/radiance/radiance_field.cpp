@@ -15,7 +15,10 @@ namespace {
 
 constexpr std::uint32_t seed_rays = 64;   // that a seed traces each time
 constexpr std::uint32_t seed_rounds = 4;  // later ones find what cells were divided into
-constexpr std::size_t generation = 1024;  // elements whose rays are traced before their links are made
+constexpr std::size_t generation = 256;   // elements whose rays are traced before their links are made
+constexpr int divided_part = 4;           // elements that smaller ones stand for trace so much fewer rays
+constexpr int smooth_part = 2;            // likewise those whose light is blended with that around
+constexpr float smooth_from = 0.5f;       // smoothness of these
 
 constexpr double most_by_chance = 2;        // a ray's find along lobes, over the mean light of elements
 constexpr float most_found_by_chance = 64;  // a gather ray's, over their mean radiance
@@ -37,9 +40,12 @@ Bounds3 core_of(const std::vector<Landing>& landings) {
     const auto axis = [&](float Vec3::*x) {
         std::vector<float> values;
         for (const Landing& l : landings) values.push_back(l.position.*x);
-        std::ranges::sort(values);
-        lower.*x = values[values.size() / 20];
-        upper.*x = values[values.size() - 1 - values.size() / 20];
+        const auto low = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
+        const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 20);
+        std::ranges::nth_element(values, low);
+        lower.*x = *low;
+        std::ranges::nth_element(values, high);
+        upper.*x = *high;
     };
     axis(&Vec3::x);
     axis(&Vec3::y);
@@ -49,6 +55,33 @@ Bounds3 core_of(const std::vector<Landing>& landings) {
     return core;
 }
 
+/// Orders landings by cells of this size along a Morton curve: what lies together is made together.
+void sort_by_place(std::vector<Landing>& landings, float cell) {
+    Bounds3 box;
+    for (const Landing& l : landings) box.add(l.position);
+    const auto spread = [](float x) {  // ten bits, two zeros after each
+        auto i = static_cast<std::uint32_t>(std::clamp(x, 0.0f, 1023.0f));
+        i = (i | i << 16) & 0x030000ffu;
+        i = (i | i << 8) & 0x0300f00fu;
+        i = (i | i << 4) & 0x030c30c3u;
+        return (i | i << 2) & 0x09249249u;
+    };
+    struct Place {
+        std::uint32_t code, index;
+    };
+    std::vector<Place> places;
+    for (const Landing& l : landings) {
+        const Vec3 at = (l.position - box.lower) * (1 / cell);
+        places.push_back({spread(at.x) | spread(at.y) << 1 | spread(at.z) << 2,
+                          static_cast<std::uint32_t>(places.size())});
+    }
+    std::ranges::stable_sort(places, {}, &Place::code);
+    std::vector<Landing> sorted;
+    sorted.reserve(landings.size());
+    for (const Place& p : places) sorted.push_back(landings[p.index]);
+    landings = std::move(sorted);
+}
+
 class FieldBuilder {
   public:
     FieldBuilder(const Transport& t, std::span<const FieldSeed> seeds, const FieldSettings& settings,
@@ -56,17 +89,24 @@ class FieldBuilder {
         : t_(t), seeds_(seeds), settings_(settings), counts_(rays) {}
 
     FieldCells run(FieldFigures& figures, BrightCones& cones, std::vector<ElementArrivals>& arrivals,
-                   float& mean_radiance, float& most_found) {
+                   float& mean_radiance, float& most_found, NoisyLight& noisy) {
         std::vector<Landing> seen;
         for (std::uint32_t round = 0; round < seed_rounds; ++round) {
             const std::vector<Landing> more = seed_landings(round);
             seen.insert(seen.end(), more.begin(), more.end());
         }
         FieldCells cells(scale_of(seen));
+        sort_by_place(seen, cells.scale().size);
         cells_ = &cells;
-        // All cells of one size stand before links are made to them: coarse ones only guess where light ends.
+        std::vector<ElementId> homes(seen.size(), no_element);
         for (int octave = 0; octave <= settings_.finest && !stopped(); ++octave) {
-            add(seen);
+            add(seen, homes);
+            survey();
+            add_edges();
+        }
+        // All fine cells stand before links are made to them.
+        close();
+        for (int octave = 0; octave <= settings_.finest && !edges_.empty() && !stopped(); ++octave) {
             add_edges();
             close();
         }
@@ -80,6 +120,8 @@ class FieldBuilder {
             figures.iterations = reflect();
         }
         add_links_to_vectors();
+        noisy_.smoothness.resize(cells.elements().size());
+        noisy = std::move(noisy_);
         if (settings_.arrivals) {
             straight_.resize(cells.elements().size());
             arrivals = make_arrivals(cells, links_, irradiance_, share(), straight_, settings_.threads);
@@ -122,7 +164,8 @@ class FieldBuilder {
             if (stopped()) return;
             const StartPoint from{seeds_[i].position, seeds_[i].normal, seeds_[i].offset};
             found[i] =
-                trace_element(t_, from.normal, {&from, 1}, static_cast<ElementId>(i), few, counts).landings;
+                trace_element(t_, from.normal, {&from, 1}, static_cast<ElementId>(i), few.rays, few, counts)
+                    .landings;
         });
         std::vector<Landing> all;
         for (const auto& landings : found) all.insert(all.end(), landings.begin(), landings.end());
@@ -142,17 +185,17 @@ class FieldBuilder {
 
     [[nodiscard]] bool full() const { return cells_->elements().size() >= settings_.most_elements; }
 
-    /// Where the camera's gather rays land, cells are fine.
-    void add(const std::vector<Landing>& landings) {
-        for (const Landing& l : landings) {
-            const ElementId id = full() ? cells_->find(l.position, l.normal)
-                                        : cells_->find_or_make_fine(l.position, l.normal, l.offset);
-            if (id != no_element && id >= traced_) met_.offer(id, {l.position, l.normal, l.offset});
+    /// Where the camera's gather rays land, cells are fine. `homes`: by landing, the element that stands for
+    /// it; only what divided ones stand for needs others.
+    void add(const std::vector<Landing>& landings, std::vector<ElementId>& homes) {
+        for (std::size_t i = 0; i < landings.size(); ++i) {
+            const Landing& l = landings[i];
+            if (homes[i] != no_element && !cells_->elements()[homes[i]].divided) continue;
+            homes[i] = full() ? cells_->find(l.position, l.normal)
+                              : cells_->find_or_make_fine(l.position, l.normal, l.offset);
+            if (homes[i] != no_element && homes[i] >= surveyed_)
+                met_.offer(homes[i], {l.position, l.normal, l.offset});
         }
-    }
-
-    std::vector<StartPoint> points_of(ElementId id, RayCounts& counts) const {
-        return start_points(t_, *cells_, id, met_.of(id), settings_.seed, counts);
     }
 
     /// Gives all of what an element with an edge of light stands for cells of the next size.
@@ -162,64 +205,117 @@ class FieldBuilder {
         edges_.clear();
     }
 
-    /// Traces elements in the order in which they were made, until no new ones are met.
-    void close() {
-        struct Traced {
+    /// Samples the lights from the elements that are new, and finds those that are to be divided.
+    void survey() {
+        struct Surveyed {
             std::vector<StartPoint> points;
-            ElementView view;
+            ElementSurvey survey;
         };
-        while (traced_ < cells_->elements().size() && !stopped()) {
-            const std::size_t count = std::min(generation, cells_->elements().size() - traced_);
-            std::vector<Traced> all(count);
-            in_parallel(count, [&](std::size_t i, RayCounts& counts) {
-                const auto id = static_cast<ElementId>(traced_ + i);
+        while (surveyed_ < cells_->elements().size() && !stopped()) {
+            std::vector<Surveyed> all(std::min(generation, cells_->elements().size() - surveyed_));
+            const double mean_light = surveyed_ > 0 ? light_ / static_cast<double>(surveyed_) : 0;
+            in_parallel(all.size(), [&](std::size_t i, RayCounts& counts) {
+                const auto id = static_cast<ElementId>(surveyed_ + i);
                 FieldElement& element = cells_->elements()[id];
                 center(t_, *cells_, element, counts);
-                all[i].points = points_of(id, counts);
-                all[i].view = trace_element(t_, element.normal, all[i].points, id, settings_, counts);
+                all[i].points = start_points(t_, *cells_, id, met_.of(id), settings_.seed, counts);
+                all[i].survey =
+                    survey_element(t_, element.normal, all[i].points, id, mean_light, settings_, counts);
                 if (t_.caustics)
-                    t_.caustics->add_arriving(element, all[i].points, settings_.bounces, all[i].view.light);
+                    t_.caustics->add_arriving(element, all[i].points, settings_.bounces, all[i].survey.light);
             });
-            const double mean_light = traced_ > 0 ? light_ / static_cast<double>(traced_) : 0;
-            for (const Traced& traced : all)
-                if (link(traced.view, mean_light))
-                    edges_.insert(edges_.end(), traced.points.begin(), traced.points.end());
+            for (Surveyed& s : all) {
+                if (divide(s.survey, mean_light))
+                    edges_.insert(edges_.end(), s.points.begin(), s.points.end());
+                met_.set(static_cast<ElementId>(surveyed_++), std::move(s.points));
+            }
         }
     }
 
-    /// Links an element to where its rays have landed.
-    void add_links(FieldLinks& links, std::size_t from, const std::vector<Landing>& landings, bool may_make) {
+    /// Whether the edge of a light's shadow crosses the next element, and smaller cells may show where.
+    /// `mean_light`: of elements so far, from samples of the lights, W·m⁻².
+    bool divide(const ElementSurvey& survey, double mean_light) {
+        FieldElement& element = cells_->elements()[surveyed_];
+        element.irradiance = survey.light;
+        const float light = luminance(survey.light.towards(element.normal));
+        light_ += light;
+        const int coarse = cells_->scale().coarsest_level(element.position);
+        const bool divisible = !element.coarse && element.level < coarse + cells_->scale().finest;
+        const bool edge = survey.contrast > settings_.edge_above * std::max(mean_light, double{light});
+        element.divided = divisible && (edge || element.size > settings_.divide_above * survey.distance);
+        const float room = settings_.divide_above * survey.distance / element.size;  // 1: just not divided
+        noisy_.smoothness.push_back(std::clamp(room - 1, 0.0f, 1.0f));
+        return edge && (divisible || element.coarse);
+    }
+
+    /// What an element's rays have found, and where of that there are elements already.
+    struct Traced {
+        ElementView view;
+        std::vector<ElementId> to;  // by landing
+    };
+
+    /// Traces elements in the order in which they were made, until no new ones are met.
+    void close() {
+        for (survey(); traced_ < surveyed_ && !stopped(); survey()) {
+            std::vector<Traced> all(std::min(generation, surveyed_ - traced_));
+            in_parallel(all.size(), [&](std::size_t i, RayCounts& counts) {
+                const auto id = static_cast<ElementId>(traced_ + i);
+                all[i].view = trace_element(t_, cells_->elements()[id].normal, met_.of(id), id, rays_of(id),
+                                            settings_, counts);
+                for (const Landing& l : all[i].view.landings)
+                    all[i].to.push_back(cells_->find(l.position, l.normal));
+            });
+            for (Traced& traced : all) link(traced);
+        }
+    }
+
+    /// How many rays an element is worth.
+    [[nodiscard]] int rays_of(ElementId id) const {
+        const auto part = [&](int of) {
+            const auto packet = static_cast<int>(packet_size);
+            return (settings_.rays / of + packet - 1) / packet * packet;
+        };
+        const FieldElement& e = cells_->elements()[id];
+        return part(e.divided ? divided_part : noisy_.smoothness[id] >= smooth_from ? smooth_part : 1);
+    }
+
+    /// What links of an element count for that has fewer rays than others.
+    [[nodiscard]] float worth(std::size_t id) const {
+        return static_cast<float>(settings_.rays) / static_cast<float>(rays_of(static_cast<ElementId>(id)));
+    }
+
+    /// Links an element to where its rays have landed: to elements `to`, and such that are made where there
+    /// are none.
+    void add_links(FieldLinks& links, std::size_t from, const std::vector<Landing>& landings,
+                   std::span<const ElementId> to, bool may_make) {
         const Frame frame = frame_around(cells_->elements()[from].normal);
-        for (const Landing& l : landings) {
-            const ElementId to = may_make && !full()
+        const float times = worth(from);
+        for (std::size_t i = 0; i < landings.size(); ++i) {
+            const Landing& l = landings[i];
+            const ElementId id = to[i] == no_element && may_make && !full()
                                      ? cells_->find_or_make_coarse(l.position, l.normal, l.offset)
-                                     : cells_->find(l.position, l.normal);
-            if (to != no_element)
-                links.links.push_back(
-                    make_link(to, l.ray, pack_direction(frame.to_local({l.direction})), l.throughput));
+                                     : to[i];
+            if (id != no_element)
+                links.links.push_back(make_link(id, l.ray, pack_direction(frame.to_local({l.direction})),
+                                                l.throughput * times));
             else
                 ++unresolved_;
         }
     }
 
-    /// Turns what the next element has seen into links. Whether the edge of a light's shadow crosses it, and
-    /// smaller cells may show where. `mean_light`: of elements so far, straight from lights, W·m⁻².
-    bool link(const ElementView& view, double mean_light) {
-        add_links(links_, traced_, view.landings, true);
+    /// Turns what the next element has seen into links.
+    void link(const Traced& traced) {
+        add_links(links_, traced_, traced.view.landings, traced.to, true);
         links_.end_element();
         FieldElement& element = cells_->elements()[traced_];
-        element.irradiance = view.light;
-        strongest_.push_back(view.strongest);
-        finds_.insert(finds_.end(), view.finds.begin(), view.finds.end());
-        const float light = luminance(view.light.towards(element.normal));
-        light_ += light;
-        if (settings_.arrivals) straight_.add(element.normal, light, view.sky);
-        const int coarse = cells_->scale().coarsest_level(element.position);
-        const bool divisible = !element.coarse && element.level < coarse + cells_->scale().finest;
-        const bool edge = view.contrast > settings_.edge_above * std::max(mean_light, double{light});
-        element.divided = divisible && (edge || element.size > settings_.divide_above * view.distance);
+        element.irradiance.add(traced.view.light, 1);
+        noisy_.light.push_back(traced.view.light);
+        strongest_.push_back(traced.view.strongest);
+        finds_.insert(finds_.end(), traced.view.finds.begin(), traced.view.finds.end());
+        if (settings_.arrivals)
+            straight_.add(element.normal, luminance(element.irradiance.towards(element.normal)),
+                          traced.view.sky);
         ++traced_;
-        return edge && (divisible || element.coarse);
     }
 
     /// What one find along lobes in a hundred exceeds. Where bright finds are common, as of a bulb in a ball
@@ -234,13 +330,19 @@ class FieldBuilder {
     /// Light that hardly any ray finds, and then a lot of it, would be seen as dots: a ray of an element
     /// brings no more than twice what elements receive on average.
     void limit_strongest() {
-        const double mean_light = light_ / std::max(1.0, static_cast<double>(traced_));
-        const auto limit = std::max(static_cast<float>(most_by_chance * mean_light),
-                                    common_find_ * pi / static_cast<float>(settings_.rays));
+        double mean_light = 0;
+        for (std::size_t i = 0; i < traced_; ++i) {
+            const FieldElement& e = cells_->elements()[i];
+            mean_light += luminance(e.irradiance.towards(e.normal)) / static_cast<double>(traced_);
+        }
+        const float common = common_find_ * pi / static_cast<float>(settings_.rays);
+        const auto limit = std::max(static_cast<float>(most_by_chance * mean_light), common);
         for (std::size_t i = 0; i < traced_; ++i) {
             FieldElement& e = cells_->elements()[i];
-            const float found = luminance(strongest_[i].towards(e.normal));
-            if (found > limit) e.irradiance.add(strongest_[i], limit / found - 1);
+            const float found = luminance(strongest_[i].towards(e.normal)), most = limit * worth(i);
+            if (found <= most) continue;
+            e.irradiance.add(strongest_[i], most / found - 1);
+            noisy_.light[i].add(strongest_[i], most / found - 1);
         }
         strongest_.clear();
     }
@@ -313,18 +415,24 @@ class FieldBuilder {
         const std::size_t all = cells_->elements().size();
         for (std::size_t first = 0; first < all; first += generation) {
             const std::size_t count = std::min(generation, all - first);
-            std::vector<GuidedView> views(count);
+            struct Guided {
+                GuidedView view;
+                std::vector<ElementId> to;
+            };
+            std::vector<Guided> all_guided(count);
             in_parallel(count, [&](std::size_t i, RayCounts& counts) {
                 const auto id = static_cast<ElementId>(first + i);
-                const std::vector<StartPoint> points = points_of(id, counts);
-                views[i] =
-                    guide_element(t_, cells_->elements()[id].normal, points, cones_, id, settings_, counts);
+                all_guided[i].view = guide_element(t_, cells_->elements()[id].normal, met_.of(id), cones_, id,
+                                                   rays_of(id), settings_, counts);
+                for (const Landing& l : all_guided[i].view.landings)
+                    all_guided[i].to.push_back(cells_->find(l.position, l.normal));
             });
             for (std::size_t i = 0; i < count; ++i) {
+                const Guided& g = all_guided[i];
                 for (const Link& l : links_.of(first + i))
                     guided.links.push_back(
-                        make_link(l.to, l.ray, l.direction, l.value() * views[i].share[l.ray]));
-                add_links(guided, first + i, views[i].landings, false);
+                        make_link(l.to, l.ray, l.direction, l.value() * g.view.share[l.ray]));
+                add_links(guided, first + i, g.view.landings, g.to, false);
                 guided.end_element();
             }
         }
@@ -339,21 +447,25 @@ class FieldBuilder {
 
     /// Gives every element's vector the light that arrives along its links.
     void add_links_to_vectors() {
+        noisy_.light.resize(cells_->elements().size());
         in_parallel(cells_->elements().size(), [&](std::size_t i, RayCounts&) {
             FieldElement& e = cells_->elements()[i];
             const Frame frame = frame_around(e.normal);
-            const Spectrum light = e.irradiance.towards(e.normal);
-            Spectrum linked;
-            IrradianceVector vector;
+            Spectrum along_s, along_t;  // add_arriving in that frame
             for (const Link& l : links_.of(i)) {
-                const Spectrum arriving = l.value() * irradiance_[l.to] * share();
-                add_arriving(vector, e.normal, frame.to_world(unpack_direction(l.direction)).v, arriving);
-                linked += arriving;
+                const Spectrum arriving = l.value() * irradiance_[l.to];
+                const Vec3 from = unpack_direction(l.direction).v;
+                const Spectrum tilted = arriving * (1 / std::max(from.z, least_tilt_cosine));
+                along_s += tilted * from.x;
+                along_t += tilted * from.y;
             }
             // The iterations' sum along the normal, the links' shape around it.
-            const Spectrum rest = irradiance_[i] - light - linked;
-            vector.add(e.normal, rest);
+            IrradianceVector vector;
+            vector.add(e.normal, irradiance_[i] - e.irradiance.towards(e.normal));
+            vector.add(frame.s, along_s * share());
+            vector.add(frame.t, along_t * share());
             e.irradiance.add(vector, 1);
+            noisy_.light[i].add(vector, 1);
         });
     }
 
@@ -366,13 +478,14 @@ class FieldBuilder {
     BrightCones cones_;
     float mean_radiance_ = 0;
     std::vector<Spectrum> irradiance_;
-    std::size_t traced_ = 0, unresolved_ = 0;
+    std::size_t surveyed_ = 0, traced_ = 0, unresolved_ = 0;
     std::vector<IrradianceVector> strongest_;  // by traced element
     StraightLight straight_;                   // likewise, if arrivals are wanted
     std::vector<float> finds_;                 // of all rays, along lobes
     float common_find_ = infinity;
-    double light_ = 0;               // of traced elements: sum of irradiance straight from lights
-    PointReservoirs met_;            // where rays from the seeds have met elements
+    NoisyLight noisy_;
+    double light_ = 0;     // of surveyed elements: sum of irradiance that samples of the lights find
+    PointReservoirs met_;  // where rays from the seeds have met elements; of surveyed ones, where rays start
     std::vector<StartPoint> edges_;  // of elements since the last octave that edges of shadows cross
 };
 
@@ -380,9 +493,14 @@ class FieldBuilder {
 
 RadianceField::RadianceField(const Transport& t, std::span<const FieldSeed> seeds,
                              const FieldSettings& settings, RayCounts& rays)
-    : cells_(
-        FieldBuilder(t, seeds, settings, rays).run(figures_, cones_, arrivals_, mean_radiance_, most_found_)),
+    : RadianceField(t, seeds, settings, rays, NoisyLight{}) {}
+
+RadianceField::RadianceField(const Transport& t, std::span<const FieldSeed> seeds,
+                             const FieldSettings& settings, RayCounts& rays, NoisyLight noisy)
+    : cells_(FieldBuilder(t, seeds, settings, rays)
+                 .run(figures_, cones_, arrivals_, mean_radiance_, most_found_, noisy)),
       neighbors_(t, cells_, settings.threads, rays) {
+    neighbors_.smooth(noisy, settings.threads, cells_);
     figures_.bytes = cells_.bytes() + neighbors_.bytes() + arrivals_.size() * sizeof(ElementArrivals);
 }
 

@@ -76,6 +76,9 @@ class RadianceField {
     [[nodiscard]] const FieldCells& cells() const { return cells_; }
 
   private:
+    RadianceField(const Transport& t, std::span<const FieldSeed> seeds, const FieldSettings& settings,
+                  RayCounts& rays, NoisyLight noisy);
+
     FieldFigures figures_;                   // filled while cells_ is made
     BrightCones cones_;                      // likewise
     std::vector<ElementArrivals> arrivals_;  // likewise, by element
