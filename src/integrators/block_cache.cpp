@@ -355,11 +355,15 @@ class BlockCache final : public Integrator {
         return {};
     }
 
+    [[nodiscard]] std::uint32_t material_of(const ShadingPoint& point) const {
+        return static_cast<std::uint32_t>(point.vertex.point.material - transport_.scene.materials.data());
+    }
+
     FilterGuide guide_of(const CellRow& row, int x, int y) const {
         for (const auto& samples : row.samples)
             if (const GBufferPixel& pixel = samples->at(x, y); pixel.reflects_alone)
-                return {pixel.cache.gather.position, pixel.point->vertex.point.frame.n,
-                        pixel.cache.footprint};
+                return {pixel.cache.gather.position, pixel.point->vertex.point.frame.n, pixel.cache.footprint,
+                        material_of(*pixel.point)};
         return {};
     }
 
