@@ -29,6 +29,12 @@ constexpr float bright_factor = 128, least_level = 0.05f;
 /// Of a record, about.
 constexpr std::uint64_t usual_record_bytes = 55'000;
 
+/// Lobes that are sharper get at least so many residual rays per pixel, and draw so many of them.
+constexpr float sharp_alpha = 0.15f, sharp_rays = 8, sharp_bsdf_share = 0.5f;
+
+/// The integral does not resolve lobes that are sharper: 2 α radians are less than three of its points.
+constexpr float unresolved_alpha = 0.02f;
+
 /// Texels along each side of the world's square.
 constexpr int grid_side = 64;
 
@@ -178,6 +184,7 @@ class BlockCache final : public Integrator {
                                     sample.pixel->stream.bits(Dim::opacity, 2 * point.path.depth + 1), rays);
                     if (!sample.pixel->reflects_alone) continue;
                     sample.bsdf = *receiver_bsdf(point.vertex, map_frame);
+                    leave_lobe_to_rays(sample);
                     estimator.add_light(point, sample.pixel->stream, pilot, LightSeries::first,
                                         sample.sampled.light);
                 }
@@ -190,7 +197,7 @@ class BlockCache final : public Integrator {
     }
 
     [[nodiscard]] ResidualSettings residual_settings() const {
-        return {source_, split_, environment_, plan_.rays, plan_.exact};
+        return {source_, split_, environment_, plan_.rays};
     }
 
     /// `sums`: of the pixel, empty.
@@ -232,16 +239,19 @@ class BlockCache final : public Integrator {
             for (std::size_t j = i; j < samples.size(); ++j) {
                 LitSample& sample = samples[j];
                 if (!sample.pixel->reflects_alone || sample.done
-                    || (j != i && !shares_integral(first, sample, plan_.exact)))
+                    || (j != i && !shares_integral(first, sample, plan_.exact || first.lobe_by_rays)))
                     continue;
                 sample.done = true;
                 sample.maps = static_cast<float>(blend.maps().size());
                 const Spectrum scale = diffuse_ratio(first, sample);
                 take_reflected(first, blend, scale, w, sample);
+                if (sample.lobe_by_rays) sample.albedo += sample.bsdf.specular_f0;
                 if (found_.estimates_noise()) sample.deviation = luminance(scale) * w.integral.deviation();
                 ++counts.points;
                 estimator.add({*sample.pixel->point, sample.pixel->stream, w.integral, w.distribution,
-                               has_layers(first.bsdf) ? Spectrum{1} : scale, budget.residual},
+                               has_layers(first.bsdf) ? Spectrum{1} : scale, budget.residual,
+                               meets_lights(first) ? sharp_bsdf_share : usual_bsdf_share,
+                               plan_.exact || first.lobe_by_rays},
                               sample.sampled);
                 estimator.add_light(*sample.pixel->point, sample.pixel->stream, budget.light,
                                     LightSeries::second, more[j]);
@@ -261,21 +271,40 @@ class BlockCache final : public Integrator {
     [[nodiscard]] RayBudget budget_of(const LitSample& sample, const ExpectedLight& bright,
                                       const Workspace& w, float pass_share) const {
         const RayDemand& demand = plan_.demand;
+        const float sharp = !demand.residual_adapts || !meets_lights(sample) ? 0.0f
+                            : sample.lobe_by_rays                            ? 1.0f
+                                                  : sharp_rays / plan_.pixel_samples;
         const MapRadiance held = w.integral.reflected();
         const float throughput = luminance(sample.pixel->point->path.throughput);
         const float shines = luminance(sample.pixel->emission)
                              + throughput * luminance(held.direct + held.indirect + sample.delta)
                              + bright.mean;
-        if (!(shines > 0)) return {plan_.rays.residual, 0};
+        if (!(shines > 0)) return {std::max(plan_.rays.residual, sharp), 0};
         RayBudget budget{plan_.rays.residual, 0};
         if (demand.residual_adapts && plan_.rays.residual > 0)
             budget.residual =
                 demand.residual_rays(throughput * w.integral.deviation() / shines) / plan_.pixel_samples;
+        budget.residual = std::max(budget.residual, sharp);
         if (demand.light_adapts)
             budget.light =
                 bright.known ? demand.more_light(bright.deviation * pass_share / shines) / plan_.pixel_samples
                              : plan_.rays.light;
         return budget;
+    }
+
+    /// Whether bright light may be left to rays that the BSDF draws: lobes so sharp are not worth light
+    /// samples, and nothing else asks for rays where one is filled by a lamp.
+    [[nodiscard]] bool meets_lights(const LitSample& sample) const {
+        if (sample.lobe_by_rays) return true;
+        return sample.bsdf.specular && sample.bsdf.ggx.alpha < sharp_alpha && !split_.empty();
+    }
+
+    /// A lobe that is too sharp for the maps' texels is none of theirs.
+    void leave_lobe_to_rays(LitSample& sample) const {
+        if (plan_.rays.residual <= 0 || !sample.bsdf.specular || sample.bsdf.ggx.alpha >= unresolved_alpha)
+            return;
+        sample.bsdf.specular = false;
+        sample.lobe_by_rays = true;
     }
 
     void integrate(const LitSample& sample, const Blend& blend, Workspace& w, CacheCounts& counts) const {
@@ -333,7 +362,7 @@ class BlockCache final : public Integrator {
         }
         if (found_.estimates_noise())
             doubt.add(found, throughput, radiance.total(), sample.albedo, sample.deviation);
-        if (plan_.filters) {
+        if (plan_.filters && !sample.lobe_by_rays) {  // what such a lobe shows is as fine as pixels
             residual.bright += throughput * (found.bright + found.light.radiance);
             residual.direct += throughput * found.residual.direct;
             residual.indirect += throughput * found.residual.indirect;
