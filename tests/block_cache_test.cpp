@@ -223,5 +223,37 @@ TEST_P(CacheMethods, EveryPixelIsFinite) {  // textures, glass, mirrors, a sun
     EXPECT_GT(mean_of(image), 0);
 }
 
+/// A floor of metal, nearly a mirror (GGX α .0036), under a sky that is brighter above. The maps' integral
+/// alone finds between nothing and twice what it reflects, in stripes.
+TEST(CacheOfSharpLobes, ShowsWhatTheyReflect) {
+    SceneBuilder builder;
+    MaterialDescription metal;
+    metal.metallic = 1;
+    metal.roughness = 0.06f;
+    const std::vector<std::array<float, 3>> corners{{-9, -1, 9}, {9, -1, 9}, {9, -1, -99}, {-9, -1, -99}};
+    const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+    MeshDescription floor;
+    floor.positions = corners;
+    floor.triangles = triangles;
+    floor.material = builder.add_material(metal);
+    builder.add_instance(builder.add_mesh(floor));
+    CameraDescription camera;
+    camera.world_from_camera = {1, 0, 0, 0, 0, 0.866, -0.5, 0, 0, 0.5, 0.866, 0, 0, 0, 0, 1};  // 30° down
+    builder.add_camera(camera);
+    std::vector<float> sky(24, 1);  // 2 × 4 texels
+    std::fill_n(sky.begin(), 6, 3.0f);
+    builder.set_environment(2, 4, sky);
+    const Scene scene = builder.build();
+    RenderSettings settings;
+    settings.width = settings.height = 32;
+    settings.samples_per_pixel = 4;
+    settings.gather_rays = 16;
+    settings.method = "gather";
+    const std::vector<double> expected = block_means(render(scene, settings), 8);
+    settings.method = "cache";
+    const std::vector<double> found = block_means(render(scene, settings), 8);
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i] / expected[i], 1, 0.01) << i;
+}
+
 }  // namespace
 }  // namespace relumine

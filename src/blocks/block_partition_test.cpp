@@ -266,6 +266,21 @@ TEST_F(Parallax, GrowsWithTheDisplacementUntilWholeTexelsAreSwept) {
     EXPECT_LT(error(striped, std::vector<float>(grid.texels, 4.0f), 0.1f), error(striped, near, 0.1f));
 }
 
+/// A dark plate hides nine tenths of the sky from the anchor, as a lamp's back does under a ceiling. Whoever
+/// is farther away than it is sees the sky: what is near does not move by a texel, it goes.
+TEST_F(Parallax, WhatIsNearGoesAltogether) {
+    std::vector<float> distances(grid.texels, infinity);
+    const auto hidden = [](std::size_t texel) { return texel % 10 != 0; };
+    for (std::size_t texel = 0; texel < grid.texels; ++texel)
+        if (hidden(texel)) distances[texel] = 0.01f;
+    const BlockMap map =
+        open_map(grid, [&](std::size_t texel) { return Spectrum{hidden(texel) ? 0.2f : 1.0f}; });
+    const float edges = error(map, distances, 0.009f);
+    EXPECT_NEAR(error(map, distances, 1) - edges, 0.9 * 0.8 * 0.99 / (0.9 * 0.2 + 0.1), 0.02);
+    const BlockMap wall = open_map(grid, [](std::size_t) { return Spectrum{1}; });
+    EXPECT_NEAR(error(wall, distances, 1), 0, 1e-5f);  // beside a wall as bright as the room
+}
+
 /// One lit texel: four edges of length s each sweep s·d/r, of what the sky of weight 1 reflects.
 TEST_F(Parallax, IsWhatTheEdgesSweep) {
     const std::size_t lit = grid.texel_at({normalize({0.2f, 0.3f, 0.9f})});

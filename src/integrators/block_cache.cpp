@@ -144,7 +144,7 @@ class BlockCache final : public Integrator {
     [[nodiscard]] CellLightSource light_source() const {
         return {transport_,
                 monte_carlo_,
-                {source_, split_, environment_, plan_.rays, plan_.exact},
+                {source_, split_, environment_, plan_.rays},
                 grid_,
                 points_,
                 plan_,
@@ -182,7 +182,7 @@ class BlockCache final : public Integrator {
         }
         if (found_.estimates_noise())
             doubt.add(found, throughput, radiance.total(), sample.albedo, sample.deviation);
-        if (plan_.filters) {
+        if (plan_.filters && !sample.lobe_by_rays) {  // what such a lobe shows is as fine as pixels
             residual.bright += throughput * (found.bright + found.light.radiance);
             residual.direct += throughput * found.residual.direct;
             residual.indirect += throughput * found.residual.indirect;
@@ -204,11 +204,15 @@ class BlockCache final : public Integrator {
         return {};
     }
 
+    [[nodiscard]] std::uint32_t material_of(const ShadingPoint& point) const {
+        return static_cast<std::uint32_t>(point.vertex.point.material - transport_.scene.materials.data());
+    }
+
     FilterGuide guide_of(const CellRow& row, int x, int y) const {
         for (const auto& samples : row.samples)
             if (const GBufferPixel& pixel = samples->at(x, y); pixel.reflects_alone)
-                return {pixel.cache.gather.position, pixel.point->vertex.point.frame.n,
-                        pixel.cache.footprint};
+                return {pixel.cache.gather.position, pixel.point->vertex.point.frame.n, pixel.cache.footprint,
+                        material_of(*pixel.point)};
         return {};
     }
 

@@ -13,6 +13,12 @@ namespace {
 constexpr int quad_pixels = 4;
 constexpr float quad_shares = 16;
 
+/// Lobes that are sharper get at least so many residual rays per pixel, and draw so many of them.
+constexpr float sharp_alpha = 0.15f, sharp_rays = 8, sharp_bsdf_share = 0.5f;
+
+/// The integral does not resolve lobes that are sharper: 2 α radians are less than three of its points.
+constexpr float unresolved_alpha = 0.02f;
+
 /// √ of the samples of this pass over all of the picture's: the whole errs less than a pass by as much.
 float pass_share(std::size_t samples, float all) {
     return std::sqrt(std::min(1.0f, static_cast<float>(samples) / all));
@@ -67,6 +73,7 @@ class CellLight {
                                    stream.bits(Dim::opacity, 2 * point.path.depth + 1), rays_);
         if (!sample.pixel->reflects_alone) return;
         sample.bsdf = *receiver_bsdf(point.vertex, map_frame);
+        leave_lobe_to_rays(sample);
         const RayDemand& demand = plan_.demand;
         const float rays = demand.light_adapts ? demand.pilot / plan_.pixel_samples : plan_.rays.light;
         estimator_.add_light(point, stream, rays, LightSeries::first, sample.sampled.light);
@@ -114,7 +121,7 @@ class CellLight {
     void light_own(int x, int y) {
         const LitSample& first = shared_.first();
         light_those(x, y, 1, [&](const LitSample& sample) {
-            return &sample == &first || shares_integral(first, sample, plan_.exact);
+            return &sample == &first || shares_integral(first, sample, exact(first));
         });
     }
 
@@ -122,7 +129,7 @@ class CellLight {
     void light_other(int x, int y) {
         const LitSample& first = shared_.first();
         const auto alike = [&](const LitSample& sample) {
-            return shares_integral(first, sample, plan_.exact) && seen_alike(first, sample);
+            return shares_integral(first, sample, exact(first)) && seen_alike(first, sample);
         };
         for (const LitSample& sample : cell_.at(x, y)) {
             if (!waits(sample) || !alike(sample)) continue;
@@ -149,10 +156,12 @@ class CellLight {
         sample.done = true;
         ++counts_.points;
         const Spectrum scale = shared_.give(level, sample);
+        if (sample.lobe_by_rays) sample.albedo += sample.bsdf.specular_f0;
         const ShadingPoint& point = *sample.pixel->point;
         const SampleStream& stream = sample.pixel->stream;
         estimator_.add(
-            {point, stream, shared_.integral(), shared_.distribution(), scale, level, budget.residual},
+            {point, stream, shared_.integral(), shared_.distribution(), scale, level, budget.residual,
+             meets_lights(sample) ? sharp_bsdf_share : usual_bsdf_share, exact(sample)},
             sample.sampled);
         estimator_.add_light(point, stream, budget.light, LightSeries::second, sample.more_light);
     }
@@ -161,21 +170,42 @@ class CellLight {
     /// count.
     [[nodiscard]] RayBudget budget_of(const LitSample& sample, const ExpectedLight& bright) const {
         const RayDemand& demand = plan_.demand;
+        const float sharp = !demand.residual_adapts || !meets_lights(sample) ? 0.0f
+                            : sample.lobe_by_rays                            ? 1.0f
+                                                  : sharp_rays / plan_.pixel_samples;
         const MapRadiance held = shared_.integral().reflected();
         const float throughput = luminance(sample.pixel->point->path.throughput);
         const float shines = luminance(sample.pixel->emission)
                              + throughput * luminance(held.direct + held.indirect + sample.delta)
                              + bright.mean;
-        RayBudget budget{plan_.rays.residual, 0};
+        RayBudget budget{std::max(plan_.rays.residual, sharp), 0};
         if (!(shines > 0)) return budget;
         if (demand.residual_adapts && plan_.rays.residual > 0)
-            budget.residual =
-                demand.residual_rays(throughput * shared_.deviation() / shines) / plan_.pixel_samples;
+            budget.residual = std::max(
+                demand.residual_rays(throughput * shared_.deviation() / shines) / plan_.pixel_samples, sharp);
         if (!demand.light_adapts) return budget;
         const float deviation = bright.deviation * pass_share(cell_.per_pixel, plan_.pixel_samples);
         budget.light =
             bright.known ? demand.more_light(deviation / shines) / plan_.pixel_samples : plan_.rays.light;
         return budget;
+    }
+
+    /// Whether the integral that stands for the sample is that of its integrand.
+    [[nodiscard]] bool exact(const LitSample& sample) const { return plan_.exact || sample.lobe_by_rays; }
+
+    /// Whether bright light may be left to rays that the BSDF draws: lobes so sharp are not worth light
+    /// samples, and nothing else asks for rays where one is filled by a lamp.
+    [[nodiscard]] bool meets_lights(const LitSample& sample) const {
+        if (sample.lobe_by_rays) return true;
+        return sample.bsdf.specular && sample.bsdf.ggx.alpha < sharp_alpha && !source_.residual.split.empty();
+    }
+
+    /// A lobe that is too sharp for the maps' texels is none of theirs.
+    void leave_lobe_to_rays(LitSample& sample) const {
+        if (plan_.rays.residual <= 0 || !sample.bsdf.specular || sample.bsdf.ggx.alpha >= unresolved_alpha)
+            return;
+        sample.bsdf.specular = false;
+        sample.lobe_by_rays = true;
     }
 
     const CellLightSource& source_;

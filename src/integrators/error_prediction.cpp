@@ -51,7 +51,7 @@ float deviation_left(const PixelDoubt& doubt) {
 
 std::vector<float> noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,
                                    NoiseEstimate PixelDoubt::*kind, int threads) {
-    FilterImage image{guides.width, guides.height, guides.guides, {}};
+    FilterImage image{guides.width, guides.height, guides.guides, {}, {}};
     image.values.reserve(doubts.size());
     for (const PixelDoubt& d : doubts) {
         const float scale = d.albedo > least_albedo ? 1 / sqr(d.albedo) : 0;

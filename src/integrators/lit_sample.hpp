@@ -11,7 +11,8 @@ namespace relumine {
 
 struct LitSample {
     const GBufferPixel* pixel = nullptr;
-    ReceiverBsdf bsdf;        // world space; only where the pixel reflects alone
+    ReceiverBsdf bsdf;  // world space; only where the pixel reflects alone; without a lobe left to rays
+    bool lobe_by_rays = false;
     SplitRadiance reflected;  // of the maps' radiance
     Spectrum delta;           // of lights without size
     SampledRadiance sampled;  // what residual and shadow rays add

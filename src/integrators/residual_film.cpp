@@ -28,7 +28,7 @@ void ResidualFilm::begin(int width, int height) {
     const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     residuals_.assign(filters_ ? count : 0, {});
     doubts_.assign(estimates_noise() ? count : 0, {});
-    guides_ = {width, height, std::vector<FilterGuide>(estimates_noise() ? count : 0), {}};
+    guides_ = {width, height, std::vector<FilterGuide>(estimates_noise() ? count : 0), {}, {}};
 }
 
 void ResidualFilm::put(std::size_t pixel, const PixelResidual& residual, const PixelDoubt& doubt,
@@ -52,16 +52,20 @@ void ResidualFilm::add_to(std::span<PixelSums> pixels, bool exact, bool bright, 
     }
 }
 
-/// Parts of one kind: divided by what the surface reflects, smoothed, and multiplied again.
+/// Parts of one kind: divided by what the surface reflects, smoothed, and multiplied again. Quotients count
+/// by what they are divided by, so that nothing is gained or lost where they depend on it: few rays'
+/// residuals of dark pixels between bright ones are much larger quotients.
 void ResidualFilm::add_kind(std::span<PixelSums> pixels, NoiseEstimate PixelDoubt::*kind,
                             const std::vector<Part>& parts, int threads) {
     std::vector<float> variances = noise_variances(guides_, doubts_, kind, threads);
     if (filters_) {
+        FilterImage weighed = guides_;
+        for (const PixelResidual& r : residuals_) weighed.weights.push_back(r.albedo);
         FilterParts values(parts.size());
         for (std::size_t k = 0; k < parts.size(); ++k)
             for (const PixelResidual& r : residuals_)
                 values[k].push_back(divided(r.*parts[k].found, r.albedo));
-        variances = smooth_noise(guides_, values, variances, filter_levels, threads);
+        variances = smooth_noise(weighed, values, variances, filter_levels, threads);
         for (std::size_t k = 0; k < parts.size(); ++k) add_part(pixels, parts[k], values[k]);
     }
     for (std::size_t i = 0; i < pixels.size(); ++i)

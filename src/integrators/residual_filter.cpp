@@ -14,12 +14,18 @@ constexpr float plane_tolerance = 0.5f;  // off the middle's plane, against a pi
 
 /// How alike two points of surfaces are, [0, 1].
 float likeness(const FilterGuide& a, const FilterGuide& b, float step) {
+    if (a.material != b.material) return 0;
     const float cosine = dot(a.normal, b.normal);
     if (cosine <= 0) return 0;
     float sharpened = sqr(sqr(cosine));  // cos³²
     sharpened = sqr(sqr(sqr(sharpened)));
     const float off = dot(b.position - a.position, a.normal) / (plane_tolerance * step * a.footprint);
     return sharpened / (1 + sqr(sqr(off)));
+}
+
+Spectrum ratio(Spectrum a, Spectrum b) {
+    const auto channel = [](float x, float y) { return y > 0 ? x / y : 0.0f; };
+    return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }
 
 /// The mean around a pixel and, over the same weights' squares, the variance of such a mean.
@@ -34,22 +40,22 @@ Filtered filtered(const FilterImage& image, int x, int y, int step) {
     };
     const FilterGuide& middle = image.guides[at(x, y)];
     if (middle.footprint <= 0) return {};
-    Spectrum sum, squares;
-    float weights = 0;
+    Spectrum sum, squares, weights;
     for (int dy = -2; dy <= 2; ++dy)
         for (int dx = -2; dx <= 2; ++dx) {
             const int i = x + dx * step, j = y + dy * step;
             if (i < 0 || i >= image.width || j < 0 || j >= image.height) continue;
             const FilterGuide& guide = image.guides[at(i, j)];
             if (guide.footprint <= 0) continue;
-            const float weight = spline[static_cast<std::size_t>(std::abs(dx))]
-                                 * spline[static_cast<std::size_t>(std::abs(dy))]
-                                 * likeness(middle, guide, static_cast<float>(step));
+            const float alike = spline[static_cast<std::size_t>(std::abs(dx))]
+                                * spline[static_cast<std::size_t>(std::abs(dy))]
+                                * likeness(middle, guide, static_cast<float>(step));
+            const Spectrum weight = image.weights.empty() ? Spectrum{alike} : image.weights[at(i, j)] * alike;
             sum += image.values[at(i, j)] * weight;
             squares += image.values[at(i, j)] * (weight * weight);
             weights += weight;
         }
-    return {sum / weights, squares / (weights * weights)};
+    return {ratio(sum, weights), ratio(squares, weights * weights)};
 }
 
 /// Replaces all values by use(level, filtered), level by level.
@@ -87,6 +93,14 @@ void filter_level(FilterImage& image, int level, int threads) {
     filter(image, level, level + 1, threads, [](int, const Filtered& f) { return f.mean; });
 }
 
+/// The next level's: those of the values that its own are means of.
+void filter_weights(FilterImage& image, int level, int threads) {
+    if (image.weights.empty()) return;
+    FilterImage weights{image.width, image.height, image.guides, std::move(image.weights), {}};
+    filter_level(weights, level, threads);
+    image.weights = std::move(weights.values);
+}
+
 }  // namespace
 
 void filter_along_surfaces(FilterImage& image, int levels, int threads) {
@@ -97,7 +111,7 @@ namespace {
 
 /// The luminance of the parts together, squared, and averaged over a pixel's surroundings.
 FilterImage energy(const FilterImage& guides, const FilterParts& parts, int threads) {
-    FilterImage image{guides.width, guides.height, guides.guides, {}};
+    FilterImage image{guides.width, guides.height, guides.guides, {}, {}};
     image.values.resize(guides.guides.size());
     for (std::size_t i = 0; i < image.values.size(); ++i) {
         Spectrum sum;
@@ -117,8 +131,9 @@ void filter_variances(FilterImage& variances, int levels, int threads) {
 std::vector<float> smooth_noise(const FilterImage& guides, FilterParts& parts,
                                 const std::vector<float>& variances, int levels, int threads) {
     const std::size_t count = guides.guides.size();
-    FilterImage coarse{guides.width, guides.height, guides.guides, {}}, noise = coarse;
+    FilterImage coarse{guides.width, guides.height, guides.guides, {}, guides.weights}, noise = coarse;
     for (const float v : variances) noise.values.emplace_back(v);
+    for (Spectrum& w : noise.weights) w = Spectrum{luminance(w)};
     FilterParts kept(parts.size(), std::vector<Spectrum>(count));
     std::vector<float> error(count);
     for (int level = 0; level < levels; ++level) {
@@ -133,6 +148,8 @@ std::vector<float> smooth_noise(const FilterImage& guides, FilterParts& parts,
         const FilterImage seen = energy(guides, details, threads);
         const std::vector<Spectrum> before = noise.values;
         filter(noise, level, level + 1, threads, filtered_variance);
+        filter_weights(coarse, level, threads);
+        filter_weights(noise, level, threads);
         for (std::size_t i = 0; i < count; ++i) {
             const float expected = at_level(detail_share, level) * before[i].r + noise.values[i].r;
             const float share = seen.values[i].r > expected ? 1 - expected / seen.values[i].r : 0;

@@ -12,7 +12,8 @@ namespace relumine {
 /// What a pixel shows, for telling surfaces apart.
 struct FilterGuide {
     Vec3 position, normal;
-    float footprint = 0;  // metres that a pixel covers; 0: nothing to filter here
+    float footprint = 0;         // metres that a pixel covers; 0: nothing to filter here
+    std::uint32_t material = 0;  // what is of different ones is never mixed
 };
 
 /// A picture under the filter, row-major.
@@ -20,6 +21,7 @@ struct FilterImage {
     int width = 0, height = 0;
     std::vector<FilterGuide> guides;
     std::vector<Spectrum> values;
+    std::vector<Spectrum> weights;  // that values have in means; empty: all the same
 };
 
 /// How far a filter of so many levels reaches, pixels.
@@ -39,8 +41,9 @@ using FilterParts = std::vector<std::vector<Spectrum>>;
 
 /// Smooths what may be noise and keeps what is more: level by level, a pixel's difference to its surroundings
 /// stays by the share of it, over the pixels around, that noise does not explain (Wiener's filter on the
-/// wavelet's details). `variances`: by pixel, of the luminance of the parts together. Returns the error that
-/// is left, likewise: noise, and details taken for it.
+/// wavelet's details). `guides` may have weights: Σ weight · value is then what a mean keeps. `variances`: by
+/// pixel, of the luminance of the parts together. Returns the error that is left, likewise: noise, and
+/// details taken for it.
 [[nodiscard]] std::vector<float> smooth_noise(const FilterImage& guides, FilterParts& parts,
                                               const std::vector<float>& variances, int levels, int threads);
 

@@ -18,11 +18,11 @@ std::size_t at(int x, int y) { return static_cast<std::size_t>(y * width + x); }
 /// A floor seen from above, a pixel covers a centimetre; values by pixel.
 template <typename Value>
 FilterImage floor_with(const Value& value) {
-    FilterImage image{width, height, {}, {}};
+    FilterImage image{width, height, {}, {}, {}};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             image.guides.push_back(
-                {{0.01f * static_cast<float>(x), 0.01f * static_cast<float>(y), 0}, {0, 0, 1}, 0.01f});
+                {{0.01f * static_cast<float>(x), 0.01f * static_cast<float>(y), 0}, {0, 0, 1}, 0.01f, 0});
             image.values.push_back(value(x, y));
         }
     return image;
@@ -94,6 +94,7 @@ TEST(ResidualFilter, DoesNotMixSurfaces) {
     EXPECT_LT(leak([](FilterGuide& g) { g.normal = {1, 0, 0}; }), 1e-6f);
     EXPECT_LT(leak([](FilterGuide& g) { g.normal = normalize({1, 0, 1}); }), 1e-4f);
     EXPECT_LT(leak([](FilterGuide& g) { g.position.z += 1; }), 1e-4f);
+    EXPECT_EQ(leak([](FilterGuide& g) { g.material = 7; }), 0);  // a lamp on the ceiling, say
 }
 
 TEST(ResidualFilter, SkipsPixelsWithoutASurface) {
@@ -214,6 +215,25 @@ TEST(ResidualFilter, RareFindsKeepTheirEnergy) {
     FilterParts parts{guides.values};
     static_cast<void>(smooth_noise(guides, parts, variances, levels, 1));
     EXPECT_NEAR(mean(parts[0]) / mean(plain.values), 1, 0.015);  // .890 where v − v′ is what noise explains
+}
+
+/// Tiles of two albedos have found light that is no multiple of what they reflect, as glossy ones do.
+TEST(ResidualFilter, TilesOfDifferentAlbedoKeepTheirEnergy) {
+    const auto is_dark = [](int x, int y) { return (x / 3 + y / 3) % 2 == 0; };
+    const auto albedo = [&](int x, int y) { return Spectrum{is_dark(x, y) ? 0.04f : 0.8f}; };
+    const auto found = [&](int x, int y) { return is_dark(x, y) ? -0.02f : -0.1f; };
+    FilterImage guides = floor_with(albedo);
+    guides.weights = guides.values;
+    FilterParts parts{
+        floor_with([&](int x, int y) { return Spectrum{found(x, y) / albedo(x, y).r}; }).values};
+    static_cast<void>(smooth_noise(guides, parts, std::vector<float>(guides.values.size(), 1e6f), levels, 1));
+    double before = 0, after = 0;
+    for (int y = 8; y < height - 8; ++y)
+        for (int x = 12; x < width - 12; ++x) {
+            before += double{found(x, y)};
+            after += double{parts[0][at(x, y)].r * albedo(x, y).r};
+        }
+    EXPECT_NEAR(after / before, 1, 0.01);  // 2.2 where all quotients count alike
 }
 
 TEST(ResidualFilter, KeepsWhatNoiseDoesNotExplain) {

@@ -18,15 +18,10 @@
 namespace relumine {
 namespace {
 
-/// Share of the residual rays that is drawn from the BSDF, so that no direction is left out.
-constexpr float usual_bsdf_share = 0.15f;
-
 constexpr std::uint64_t residual_purpose = 0x7265736964, light_purpose = 0x6272696768,
                         second_light_purpose = 0x6c69676874, cone_purpose = 0x636f6e65;
 
-float bsdf_share(const ResidualDistribution& distribution) {
-    return distribution.empty() ? 1 : usual_bsdf_share;
-}
+float bsdf_share(const IntegratedPoint& point) { return point.distribution.empty() ? 1 : point.bsdf_share; }
 
 /// The rays of one camera sample among those of all the pixel's samples.
 struct RayRange {
@@ -120,7 +115,7 @@ std::optional<ResidualEstimator::Drawn> ResidualEstimator::draw(const Integrated
                                                                 const SampleStream& stream) {
     const Vertex& vertex = point.x.vertex;
     const std::uint32_t depth = point.x.path.depth;
-    if (stream.next1(Dim::light_choice, depth) >= bsdf_share(point.distribution)) {
+    if (stream.next1(Dim::light_choice, depth) >= bsdf_share(point)) {
         const ResidualSample s = point.distribution.sample(stream.next2(Dim::direction, depth));
         return Drawn{s.direction, s.texel, false};
     }
@@ -141,11 +136,11 @@ void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleS
     const std::optional<Drawn> drawn = draw(point, stream);
     if (!drawn) return;
     const BsdfValue bsdf = value_towards(vertex, drawn->direction);
-    const float share = bsdf_share(point.distribution), rays = point.rays;
+    const float share = bsdf_share(point), rays = point.rays;
     const float guided = point.distribution.empty() ? 0 : point.distribution.pdf(drawn->texel);
     const float density = rays * ((1 - share) * guided + share * bsdf.pdf);
     if (!(density > 0)) return;
-    const Spectrum h = settings_.exact ? point.scale * point.integral.bsdf_at(drawn->texel) : bsdf.value;
+    const Spectrum h = point.exact ? point.scale * point.integral.bsdf_at(drawn->texel) : bsdf.value;
     const MapRadiance held = point.integral.radiance_at(drawn->texel);
     const std::size_t lane = residual_count_++;
     residual_[lane] = {
@@ -158,7 +153,8 @@ void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleS
         drawn->from_bsdf ? rays * share * bsdf.pdf : 0,
         usual_bsdf_rays() * bsdf.pdf,
         drawn->from_bsdf && cone_budget_ > 0 ? cone_budget_ * pdf(cones_, drawn->direction) : 0,
-        light_budget_};
+        light_budget_,
+        point.exact};
     residual_streams_[lane] = stream;
     residual_rays_[lane] = {ray_origin(vertex.point, drawn->direction), drawn->direction,
                             is_black(bsdf.value) ? -1 : infinity, stream.bits(Dim::opacity, 2 * depth + 2)};
@@ -193,7 +189,7 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
                     ray.direction, coloured ? t.lights.environment_radiance(ray.direction) : found.direct);
     }
     const Spectrum colour = !hit && t.tracer.has_coloured_panes() ? t.tracer.tint(ray, hit.t) : Spectrum{1};
-    const bool true_dim = hit || settings_.exact || ray.t_max < 0;
+    const bool true_dim = hit || drawn.exact || ray.t_max < 0;
     const Spectrum dim =
         true_dim ? found.direct * (1 - bright.share) : settings_.environment.texels[drawn.texel] * colour;
     MapRadiance residual;

@@ -41,10 +41,10 @@ struct ResidualSettings {
     const BrightSplit& split;
     const DimEnvironment& environment;
     RayBudget budget;  // what is usual: it divides bright light between light samples and other rays
-    bool exact;  // integrals are; if not, rays that miss bring back the environment's mean over their texel,
-                 // because the maps hold the same: only what is seen is estimated, not the environment's
-                 // detail
 };
+
+/// Share of the residual rays that is drawn from the BSDF, so that no direction is left out.
+inline constexpr float usual_bsdf_share = 0.15f;
 
 /// A camera sample with the integral that stands for it.
 struct IntegratedPoint {
@@ -55,6 +55,10 @@ struct IntegratedPoint {
     Spectrum scale;                            // the point's integral is so many times `integral`
     float level;                               // the same of its radiance
     float rays;                                // residual rays that it gets on average
+    float bsdf_share;                          // of them is drawn from the BSDF
+    bool exact;  // the integral is that of its integrand; if not, rays that miss bring back the environment's
+                 // mean over their texel, because the maps hold the same: only what is seen is estimated, not
+                 // the environment's detail
 };
 
 /// Estimates the difference between the light that points reflect and their map integrals. With residual rays
@@ -85,6 +89,7 @@ class ResidualEstimator {
         float usual_bsdf_density = 0;  // likewise, of as many as are usual: against the two below
         float cone_density = 0;        // of rays towards bright surfaces
         float light_budget = 0;        // usual rays of the point towards lights
+        bool exact = false;
     };
     struct LightRay {
         FoundLight* sum = nullptr;
