@@ -8,11 +8,13 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <thread>
 
 #include "cli_workplace.hpp"
+#include "relumine/compare.hpp"
 #include "relumine/image.hpp"
 
 namespace relumine::test {
@@ -332,6 +334,57 @@ TEST(CliIsa, PinsTheSetAndItStandsInTheCheckpoint) {
         GTEST_SKIP() << "one instruction set alone";
     expect_one_line(work.render({"--isa", "avx2", "--checkpoint", work.checkpoint, "--resume"}), 1,
                     "instruction set of the checkpoint: expected \"AVX2\" as in this render, found \"SSE4\"");
+}
+
+/// What docs/command.md promises between instruction sets: the relative L1 of two pictures.
+double isa_bound(const std::string& method) { return method == "cache" ? 2e-3 : 1e-4; }
+
+class IsaMethods : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Cli, IsaMethods,
+                         ::testing::Values("path", "gather", "reproject", "reproject-mc", "cache",
+                                           "block-gather", "irradiance-cache", "radiance-cache"));
+
+TEST_P(IsaMethods, PicturesStayWithinTheBound) {
+    const ScratchFolder folder;
+    const auto render = [&](const std::string& isa, const std::string& seed) {
+        const std::string file = folder / (isa + seed + ".pfm");
+        const int code = run_relumine({"render",
+                                       RELUMINE_SOURCE_DIR "/scenes/cornell-glossy.glb",
+                                       "--environment",
+                                       RELUMINE_SOURCE_DIR "/scenes/sky.exr",
+                                       "--method",
+                                       GetParam(),
+                                       "--isa",
+                                       isa,
+                                       "--seed",
+                                       seed,
+                                       "--size",
+                                       "36x20",
+                                       "--spp",
+                                       "2",
+                                       "--max-depth",
+                                       "4",
+                                       "--record-size",
+                                       "16",
+                                       "--gap-cell",
+                                       "8",
+                                       "--gather-rays",
+                                       "16",
+                                       "--radiance",
+                                       "emission",
+                                       "-o",
+                                       file})
+                             .exit_code;
+        return code == 0 ? std::optional(read_image(file)) : std::nullopt;
+    };
+    const std::optional<Image> reference = render("sse4", "0");
+    if (!reference) GTEST_SKIP() << "no x86 here";
+    const double bound = isa_bound(GetParam());
+    for (const char* isa : {"avx2", "avx512"})
+        if (const std::optional<Image> image = render(isa, "0")) {
+            EXPECT_LE(compare_images(*image, *reference, {}).relative_l1, bound) << isa;
+        }
+    EXPECT_GT(compare_images(*render("sse4", "1"), *reference, {}).relative_l1, bound);  // other rays
 }
 
 }  // namespace

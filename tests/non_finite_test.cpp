@@ -2,7 +2,11 @@
 // Samples that are not finite: dropped, counted and replayed, by every method.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "relumine/error.hpp"
+#include "scene/scene_data.hpp"
 #include "tests/keep_support.hpp"
 
 namespace relumine {
@@ -23,16 +27,22 @@ void add_square(SceneBuilder& builder, float half, float z, float emission) {
     builder.add_instance(builder.add_mesh({"", corners, {}, {}, triangles, builder.add_material(material)}));
 }
 
-/// A wall of radiance 1, and before it a small square that is as bright as a float can be: nothing but the
-/// camera sees it, and no sum of two samples of it is finite.
-Scene scene_with_poison() {
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+
+/// A wall of radiance 1, and before it a small square of this radiance; nothing but the camera sees it. At
+/// 3.2e38 no sum of two samples of it is finite.
+Scene scene_with_poison(float radiance) {
     SceneBuilder builder;
     add_square(builder, 10, -4, 1);
-    add_square(builder, 0.5f, -2, 3.2e38f);
+    add_square(builder, 0.5f, -2, std::isnan(radiance) ? 1 : radiance);
     CameraDescription camera;
     camera.vertical_fov = 0.9;
     builder.add_camera(camera);
-    return builder.build();
+    Scene scene = builder.build();
+    if (!std::isnan(radiance)) return scene;
+    SceneData data = scene.data();  // no reader lets it in
+    data.materials[1].emission = Spectrum{1, radiance, 1};
+    return Scene(std::make_shared<const SceneData>(std::move(data)));
 }
 
 class NonFinite : public ::testing::TestWithParam<const char*> {};
@@ -40,9 +50,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, NonFinite,
                          ::testing::Values("path", "gather", "reproject", "reproject-mc", "cache",
                                            "block-gather", "irradiance-cache", "radiance-cache"));
 
-TEST_P(NonFinite, SamplesAreDroppedCountedAndReplayed) {
-    const Scene scene = scene_with_poison();
-    RenderSettings settings = small_settings(GetParam());
+void expect_dropped_counted_and_replayed(const Scene& scene, const std::string& method) {
+    RenderSettings settings = small_settings(method);
     settings.aovs = {"samples"};
     settings.max_depth = 0;  // emission alone
     StopAfter observer(no_end);
@@ -67,6 +76,14 @@ TEST_P(NonFinite, SamplesAreDroppedCountedAndReplayed) {
     const ReplayedSample healthy = replay_sample(scene, settings, 0, 0, 3);
     EXPECT_TRUE(healthy.finite);
     EXPECT_EQ(healthy.emission, (std::array<float, 3>{1, 1, 1}));
+}
+
+TEST_P(NonFinite, SamplesThatOverflowAreDroppedCountedAndReplayed) {
+    expect_dropped_counted_and_replayed(scene_with_poison(3.2e38f), GetParam());
+}
+
+TEST_P(NonFinite, PlantedNansAreDroppedCountedAndReplayed) {
+    expect_dropped_counted_and_replayed(scene_with_poison(not_a_number), GetParam());
 }
 
 TEST_P(NonFinite, ReplayedSamplesAddUpToThePixel) {

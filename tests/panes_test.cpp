@@ -155,6 +155,7 @@ TEST(Panes, UnbiasedMethodsAgreeThroughColouredPanes) {
     const auto reference = estimates(scene, path, 12);
     RenderSettings gather = path;
     gather.method = "gather";
+    gather.radiance = "path";
     gather.samples_per_pixel = 8;
     EXPECT_GT(agreement_p(estimates(scene, gather, 12), reference), false_positive_rate);
     gather.light_samples = 4;

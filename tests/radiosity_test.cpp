@@ -78,7 +78,9 @@ TEST_P(Methods, ABrightRoomKeepsItsEnergy) {  // emission 1 − ρ, albedo ρ = 
 }
 
 TEST_P(Methods, TheGreySphereIsOne) {
-    EXPECT_NEAR(mean_of(render(project_scene("grey-sphere.glb"), small(GetParam()))), 1, 0.006);
+    RenderSettings settings = small(GetParam());
+    if (settings.method == "reproject") settings.samples_per_pixel = 4;  // thousands of gap rays for each
+    EXPECT_NEAR(mean_of(render(project_scene("grey-sphere.glb"), settings)), 1, 0.006);
 }
 
 TEST(Radiosity, DepthCounts) {  // emission ½, albedo ½: ½ + ¼ + …

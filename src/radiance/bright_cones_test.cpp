@@ -7,6 +7,7 @@
 
 #include "base/sample_stream.hpp"
 #include "shading/sampling.hpp"
+#include "tests/statistics.hpp"
 
 namespace relumine {
 namespace {
@@ -75,6 +76,45 @@ TEST_P(ConesFrom, SamplesHaveTheDensityThatTheySay) {  // Σ g/p = ∫ g over th
     }
     EXPECT_NEAR(drawn / uniform, 1, 0.015);
     EXPECT_GT(std::abs(mutant / uniform - 1), 0.015);
+}
+
+/// χ² of directions over cells of equal solid angle; `wider` opens the cones that are drawn from. As many
+/// uniform directions are counted with them: cells that a cone hardly touches then expect something too.
+double p_of_cells(const BrightCones::Table& table, float wider) {
+    constexpr int rows = 32, columns = 64, fine = 24;
+    constexpr std::uint32_t draws = 50'000;
+    BrightCones::Table drawn_from = table;
+    for (std::size_t i = 0; i < table.count; ++i) drawn_from.one_less_cosine[i] *= wider;
+    std::vector<double> observed(rows * columns);
+    std::vector<double> expected(rows * columns, double{draws} / (rows * columns));
+    const auto count = [&](Vec3 w) {
+        const float turn = std::atan2(w.y, w.x) / (2 * pi);
+        const int row = std::clamp(static_cast<int>((1 - w.z) / 2 * rows), 0, rows - 1);
+        const int column =
+            std::clamp(static_cast<int>((turn < 0 ? turn + 1 : turn) * columns), 0, columns - 1);
+        ++observed[static_cast<std::size_t>(row * columns + column)];
+    };
+    for (std::uint32_t i = 0; i < draws; ++i) {
+        const SampleStream stream{3, i, 1, PointSet::independent};
+        count(sample(drawn_from, stream.next2(Dim::direction)).direction.v);
+        count(uniform_direction(stream.next2(Dim::light_point)).v);
+    }
+    const double share = 4 * double{pi} * draws / (rows * columns * fine * fine);
+    for (int row = 0; row < rows * fine; ++row)
+        for (int column = 0; column < columns * fine; ++column) {
+            const WorldDir w = uniform_direction({(static_cast<float>(row) + 0.5f) / (rows * fine),
+                                                  (static_cast<float>(column) + 0.5f) / (columns * fine)});
+            expected[static_cast<std::size_t>(row / fine * columns + column / fine)] +=
+                share * double{pdf(table, w)};
+        }
+    return testing::chi_square_p(observed, expected);
+}
+
+TEST_P(ConesFrom, DirectionsFollowTheDensity) {  // false-positive rate: 1e-6 each
+    const FieldCells cells = floor_cells();
+    const auto table = cones_of(cells).seen_from(GetParam(), -up);
+    EXPECT_GT(p_of_cells(table, 1), 1e-6);
+    EXPECT_LT(p_of_cells(table, 0.9f), 1e-6);  // cones narrower by 5 % must be caught
 }
 
 TEST_P(ConesFrom, EveryBrightPointCanBeDrawn) {

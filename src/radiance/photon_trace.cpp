@@ -7,6 +7,7 @@
 #include "base/executor.hpp"
 #include "radiance/direct_light.hpp"
 #include "radiance/lobe_walk.hpp"
+#include "radiance/photon_targets.hpp"
 #include "shading/material.hpp"
 #include "shading/reflectance.hpp"
 #include "shading/sampling.hpp"
@@ -16,78 +17,9 @@ namespace {
 
 constexpr std::uint32_t paths_at_once = 1024;
 constexpr std::uint64_t photon_purpose = 0x70686f746f6e;
-constexpr int longest_path = 64;     // reflections and refractions
-constexpr float coat_share = 0.05f;  // of the photons of a mirror: what a dielectric reflects
+constexpr int longest_path = 64;  // reflections and refractions
 /// What shading normals may do to a photon's flux at a vertex: grazing ones would make it arbitrarily strong.
 constexpr float most_correction = 8;
-
-/// What LobeSplit has as α is no less, but where a texture makes surfaces smoother.
-float least_mean_alpha(const Material& m) {
-    const float alpha = sqr(m.roughness);
-    if (!is_anisotropic(m) || m.anisotropy_texture) return alpha;
-    return std::sqrt(alpha * lerp(alpha, 1.0f, sqr(m.anisotropy)));
-}
-
-bool may_be_specular(const Material& m) {
-    if (!is_black(m.diffuse_transmission)) return false;
-    if (m.coated_diffuse) return m.specular > 0 && least_mean_alpha(m) < caustic_alpha;
-    if (!m.metallic_roughness_texture && least_mean_alpha(m) >= caustic_alpha) return false;
-    return m.transmission > 0 || m.metallic > 0 || m.specular > 0;
-}
-
-/// Mirrors and glass against dielectric coats.
-float strength(const Material& m) { return m.transmission > 0 || m.metallic > 0 ? 1 : coat_share; }
-
-/// A triangle that photons may meet first.
-struct Target {
-    std::uint32_t instance, triangle;
-    float area;  // metres²
-};
-
-/// Specular triangles. Objects are drawn by the square root of their areas, so that small ones get their
-/// share.
-class Targets {
-  public:
-    explicit Targets(const SceneData& scene) {
-        double sum = 0;
-        for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-            const Mesh& mesh = scene.meshes[index(scene.instances[i].mesh)];
-            const Material& material = scene.materials[index(mesh.material)];
-            if (may_be_specular(material)) add(scene, i, mesh, strength(material), sum);
-        }
-    }
-
-    [[nodiscard]] bool empty() const { return targets_.empty(); }
-    [[nodiscard]] std::size_t draw(float u) const {
-        const double at = double{u} * sums_.back();
-        const auto found = std::ranges::upper_bound(sums_, at);
-        return std::min(static_cast<std::size_t>(found - sums_.begin()), targets_.size() - 1);
-    }
-    [[nodiscard]] const Target& operator[](std::size_t i) const { return targets_[i]; }
-    /// Of the points of a target, 1/metres².
-    [[nodiscard]] float density(std::size_t i) const {
-        const double share = (sums_[i] - (i > 0 ? sums_[i - 1] : 0)) / sums_.back();
-        return static_cast<float>(share / double{targets_[i].area});
-    }
-
-  private:
-    void add(const SceneData& scene, std::uint32_t instance, const Mesh& mesh, float strength, double& sum) {
-        const std::size_t first = targets_.size();
-        double area = 0;
-        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-            const auto [a, b, c] = world_triangle(scene, instance, t);
-            const float size = 0.5f * length(cross(b - a, c - a));
-            if (!(size > 0)) continue;
-            targets_.push_back({instance, t, size});
-            area += double{size};
-        }
-        for (std::size_t i = first; i < targets_.size(); ++i)
-            sums_.push_back(sum += double{strength} * double{targets_[i].area} / std::sqrt(area));
-    }
-
-    std::vector<Target> targets_;
-    std::vector<double> sums_;  // of their weights, up to and including each
-};
 
 /// The share of light that meets the surface at `hit` instead of passing it.
 Spectrum met_share(const Transport& t, const Hit& hit, WorldDir direction) {
@@ -101,7 +33,7 @@ Spectrum met_share(const Transport& t, const Hit& hit, WorldDir direction) {
 /// Follows one photon after the other.
 class PhotonTracer {
   public:
-    PhotonTracer(const Transport& t, const Targets& targets, const LightSampler& lights,
+    PhotonTracer(const Transport& t, const PhotonTargets& targets, const LightSampler& lights,
                  const PhotonSettings& settings, std::vector<Photon>& photons, RayCounts& rays)
         : t_(t), targets_(targets), lights_(lights), settings_(settings), photons_(photons), rays_(rays) {}
 
@@ -116,7 +48,7 @@ class PhotonTracer {
     /// Puts the path on a specular surface that light has reached; its flux, 0 where none has.
     Spectrum begin(PathState& path, const SampleStream& stream) {
         const std::size_t drawn = targets_.draw(stream.next1(Dim::light_choice));
-        const Target& target = targets_[drawn];
+        const PhotonTargets::Target& target = targets_[drawn];
         const Point2 b = uniform_triangle(stream.next2(Dim::pixel));
         const Hit hit{0, b.x, b.y, target.instance, target.triangle};
         const Vec3 place = surface_point(t_.scene, hit, {{0, 0, 1}}).position;
@@ -181,7 +113,7 @@ class PhotonTracer {
     }
 
     const Transport& t_;
-    const Targets& targets_;
+    const PhotonTargets& targets_;
     const LightSampler& lights_;
     const PhotonSettings& settings_;
     std::vector<Photon>& photons_;
@@ -192,14 +124,8 @@ class PhotonTracer {
 
 bool is_caustic_lobe(const LobeSplit& split) { return split.lobes && split.alpha < caustic_alpha; }
 
-bool has_specular_surfaces(const SceneData& scene) {
-    return std::ranges::any_of(scene.instances, [&](const Instance& instance) {
-        return may_be_specular(scene.materials[index(scene.meshes[index(instance.mesh)].material)]);
-    });
-}
-
 std::vector<Photon> trace_photons(const Transport& t, const PhotonSettings& settings, RayCounts& rays) {
-    const Targets targets(t.scene);
+    const PhotonTargets targets(t.scene);
     // Nothing else finds these paths: the environment must be drawn wherever it shines.
     const LightSampler lights(t.scene, {.compensate_for_mis = false});
     if (targets.empty() || lights.empty()) return {};
