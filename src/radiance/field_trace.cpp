@@ -267,13 +267,14 @@ class LightSurvey {
           counts_(rays),
           contrast_(points.size()) {}
 
-    /// A packet of samples tells whether all find the same, as in full shadow; then they are enough.
+    /// A packet of samples tells whether all find the same, as in full light; then they are enough. Not if
+    /// all find nothing: light through a small window would be lost wherever they miss it.
     void run(ElementSurvey& survey, double mean_light) {
         const auto few = static_cast<int>(packet_size);
         if (settings_.light_samples > few) {
             sample(0, few, 0x70696c6f74);
             const float times = static_cast<float>(settings_.light_samples) / static_cast<float>(few);
-            if (times * sum_error() <= most_light_error * mean_light) {
+            if (sum_ > 0 && times * sum_error() <= most_light_error * mean_light) {
                 survey.light.add(light_, times);
                 return;
             }
