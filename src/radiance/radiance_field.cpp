@@ -20,8 +20,8 @@ constexpr int divided_part = 4;           // elements that smaller ones stand fo
 constexpr int smooth_part = 2;            // likewise those whose light is blended with that around
 constexpr float smooth_from = 0.5f;       // smoothness of these
 
-constexpr double most_by_chance = 2;        // a ray's find along lobes, over the mean light of elements
-constexpr float most_found_by_chance = 64;  // a gather ray's, over their mean radiance
+constexpr double most_by_chance = 8;         // a ray's find along lobes, over the mean light of elements
+constexpr float most_found_by_chance = 256;  // a gather ray's, over their mean radiance
 
 constexpr std::array bright_factors{4.0, 16.0, 64.0, 256.0};  // radiosity of bright elements over the mean
 constexpr double least_bright_noise = 0.02;                   // of all light, that is worth sampling apart
@@ -328,7 +328,7 @@ class FieldBuilder {
     }
 
     /// Light that hardly any ray finds, and then a lot of it, would be seen as dots: a ray of an element
-    /// brings no more than twice what elements receive on average.
+    /// brings no more than eight times what elements receive on average.
     void limit_strongest() {
         double mean_light = 0;
         for (std::size_t i = 0; i < traced_; ++i) {
