@@ -169,6 +169,24 @@ TEST(Radiosity, ARugIsAsBrightAsItsOwnLight) {
     EXPECT_LT(error / sum, 0.02);  // tents on places that rays have drawn: 1.3 %
 }
 
+/// Sixteen lamps under the floor draw most light samples away from the one above. An element whose first
+/// samples all miss it must go on: if these ended the search, the floor would have a third of its light.
+TEST(Radiosity, LightThatFirstSamplesMissIsNotLost) {
+    const Scene scene = under_a_lamp([](SceneBuilder& builder, std::size_t) {
+        for (int i = 0; i < 16; ++i)
+            builder.add_light(PointLightDescription{
+                {-1.5f + static_cast<float>(i % 4), -1, -1.5f + static_cast<float>(i / 4)}, {10, 10, 10}});
+    });
+    const RadianceField field = field_of(scene, {});
+    double found = 0, expected = 0;
+    for (float x = -1.85f; x < 1.9f; x += 0.1f)
+        for (float z = -1.85f; z < 1.9f; z += 0.1f) {
+            found += field.irradiance({x, 0, z}, {0, 1, 0}, {0, 1, 0}).value_or(Spectrum{}).g;
+            expected += lamp_on(x, 0, z);
+        }
+    EXPECT_NEAR(found / expected, 1, 0.1);
+}
+
 /// A plate half way up; the edge of its shadow on the floor is found by cells that shrink around it.
 TEST(Radiosity, ShadowsHaveEdges) {
     const Scene scene = under_a_lamp([](SceneBuilder& builder, std::size_t dark) {
