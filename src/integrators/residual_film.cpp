@@ -20,7 +20,10 @@ int ResidualFilm::reach() const {
 }
 
 std::size_t ResidualFilm::bytes_per_pixel() const {
-    return (filters_ ? sizeof(PixelResidual) : 0)
+    constexpr std::size_t parts = 2;  // direct and indirect light, with their weights and variances
+    constexpr std::size_t filtering =
+        sizeof(FilterGuide) + (1 + parts) * sizeof(Spectrum) + sizeof(float) + smoothing_bytes(parts);
+    return (filters_ ? sizeof(PixelResidual) + filtering : 0)
            + (estimates_noise() ? sizeof(FilterGuide) + sizeof(PixelDoubt) : 0);
 }
 
@@ -60,12 +63,15 @@ void ResidualFilm::add_kind(std::span<PixelSums> pixels, NoiseEstimate PixelDoub
     std::vector<float> variances = noise_variances(guides_, doubts_, kind, threads);
     if (filters_) {
         FilterImage weighed = guides_;
+        weighed.weights.reserve(residuals_.size());
         for (const PixelResidual& r : residuals_) weighed.weights.push_back(r.albedo);
         FilterParts values(parts.size());
-        for (std::size_t k = 0; k < parts.size(); ++k)
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            values[k].reserve(residuals_.size());
             for (const PixelResidual& r : residuals_)
                 values[k].push_back(divided(r.*parts[k].found, r.albedo));
-        variances = smooth_noise(weighed, values, variances, filter_levels, threads);
+        }
+        variances = smooth_noise(std::move(weighed), values, variances, filter_levels, threads);
         for (std::size_t k = 0; k < parts.size(); ++k) add_part(pixels, parts[k], values[k]);
     }
     for (std::size_t i = 0; i < pixels.size(); ++i)

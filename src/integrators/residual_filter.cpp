@@ -3,6 +3,7 @@
 #include "integrators/residual_filter.hpp"
 
 #include <array>
+#include <utility>
 
 #include "base/executor.hpp"
 
@@ -93,66 +94,106 @@ void filter_level(FilterImage& image, int level, int threads) {
     filter(image, level, level + 1, threads, [](int, const Filtered& f) { return f.mean; });
 }
 
-/// The next level's: those of the values that its own are means of.
-void filter_weights(FilterImage& image, int level, int threads) {
-    if (image.weights.empty()) return;
-    FilterImage weights{image.width, image.height, image.guides, std::move(image.weights), {}};
-    filter_level(weights, level, threads);
-    image.weights = std::move(weights.values);
-}
-
 }  // namespace
 
 void filter_along_surfaces(FilterImage& image, int levels, int threads) {
     for (int level = 0; level < levels; ++level) filter_level(image, level, threads);
 }
 
-namespace {
-
-/// The luminance of the parts together, squared, and averaged over a pixel's surroundings.
-FilterImage energy(const FilterImage& guides, const FilterParts& parts, int threads) {
-    FilterImage image{guides.width, guides.height, guides.guides, {}, {}};
-    image.values.resize(guides.guides.size());
-    for (std::size_t i = 0; i < image.values.size(); ++i) {
-        Spectrum sum;
-        for (const auto& part : parts) sum += part[i];
-        image.values[i] = Spectrum{sqr(luminance(sum))};
-    }
-    filter_along_surfaces(image, noise_levels, threads);
-    return image;
-}
-
-}  // namespace
-
 void filter_variances(FilterImage& variances, int levels, int threads) {
     filter(variances, 0, levels, threads, filtered_variance);
 }
 
-std::vector<float> smooth_noise(const FilterImage& guides, FilterParts& parts,
-                                const std::vector<float>& variances, int levels, int threads) {
-    const std::size_t count = guides.guides.size();
-    FilterImage coarse{guides.width, guides.height, guides.guides, {}, guides.weights}, noise = coarse;
+namespace {
+
+/// Values, and weights if they have any, of an image whose guides several share.
+struct Layer {
+    std::vector<Spectrum> values, weights;
+};
+
+/// Filters one layer of an image after the other, so that guides are held once.
+class Layers {
+  public:
+    Layers(FilterImage guides, int threads) : image_(std::move(guides)), threads_(threads) {}
+
+    [[nodiscard]] std::vector<Spectrum> take_weights() { return std::exchange(image_.weights, {}); }
+
+    void filter_values(Layer& layer, int level) {
+        on(layer, [&] { filter_level(image_, level, threads_); });
+    }
+    void filter_variances(Layer& layer, int level) {
+        on(layer, [&] { filter(image_, level, level + 1, threads_, filtered_variance); });
+    }
+    /// The next level's: those of the values that its own are means of.
+    void filter_weights(Layer& layer, int level) {
+        if (layer.weights.empty()) return;
+        Layer weights{std::move(layer.weights), {}};
+        filter_values(weights, level);
+        layer.weights = std::move(weights.values);
+    }
+    /// The luminance of the parts together, squared, and averaged over a pixel's surroundings.
+    [[nodiscard]] std::vector<Spectrum> energy(const FilterParts& parts) {
+        Layer layer{std::vector<Spectrum>(image_.guides.size()), {}};
+        for (std::size_t i = 0; i < layer.values.size(); ++i) {
+            Spectrum sum;
+            for (const auto& part : parts) sum += part[i];
+            layer.values[i] = Spectrum{sqr(luminance(sum))};
+        }
+        on(layer, [&] { filter_along_surfaces(image_, noise_levels, threads_); });
+        return std::move(layer.values);
+    }
+
+  private:
+    template <typename Run>
+    void on(Layer& layer, const Run& run) {
+        const auto exchange = [&] {
+            std::swap(image_.values, layer.values);
+            std::swap(image_.weights, layer.weights);
+        };
+        exchange();
+        run();
+        exchange();
+    }
+
+    FilterImage image_;  // with neither values nor weights between calls
+    int threads_;
+};
+
+/// Variances of luminance, weighed by that of the weights.
+Layer noise_layer(const std::vector<float>& variances, const std::vector<Spectrum>& weights) {
+    Layer noise;
+    noise.values.reserve(variances.size());
+    noise.weights.reserve(weights.size());
     for (const float v : variances) noise.values.emplace_back(v);
-    for (Spectrum& w : noise.weights) w = Spectrum{luminance(w)};
+    for (const Spectrum& w : weights) noise.weights.emplace_back(luminance(w));
+    return noise;
+}
+
+}  // namespace
+
+std::vector<float> smooth_noise(FilterImage guides, FilterParts& parts, const std::vector<float>& variances,
+                                int levels, int threads) {
+    const std::size_t count = guides.guides.size();
+    Layers layers(std::move(guides), threads);
+    Layer coarse{{}, layers.take_weights()}, noise = noise_layer(variances, coarse.weights);
     FilterParts kept(parts.size(), std::vector<Spectrum>(count));
     std::vector<float> error(count);
     for (int level = 0; level < levels; ++level) {
         FilterParts details(parts.size());
         for (std::size_t k = 0; k < parts.size(); ++k) {
             coarse.values = parts[k];
-            filter_level(coarse, level, threads);
-            details[k].resize(count);
-            for (std::size_t i = 0; i < count; ++i) details[k][i] = parts[k][i] - coarse.values[i];
-            parts[k] = coarse.values;
+            layers.filter_values(coarse, level);
+            details[k] = std::move(parts[k]);
+            for (std::size_t i = 0; i < count; ++i) details[k][i] = details[k][i] - coarse.values[i];
+            parts[k] = std::move(coarse.values);
         }
-        const FilterImage seen = energy(guides, details, threads);
-        const std::vector<Spectrum> before = noise.values;
-        filter(noise, level, level + 1, threads, filtered_variance);
-        filter_weights(coarse, level, threads);
-        filter_weights(noise, level, threads);
+        const std::vector<Spectrum> seen = layers.energy(details), before = noise.values;
+        layers.filter_variances(noise, level);
+        layers.filter_weights(coarse, level);
+        layers.filter_weights(noise, level);
         for (std::size_t i = 0; i < count; ++i) {
             const float expected = at_level(detail_share, level) * before[i].r + noise.values[i].r;
-            const float share = seen.values[i].r > expected ? 1 - expected / seen.values[i].r : 0;
+            const float share = seen[i].r > expected ? 1 - expected / seen[i].r : 0;
             for (std::size_t k = 0; k < parts.size(); ++k) kept[k][i] += details[k][i] * share;
             error[i] += expected * share;
         }

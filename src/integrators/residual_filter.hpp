@@ -44,8 +44,14 @@ using FilterParts = std::vector<std::vector<Spectrum>>;
 /// wavelet's details). `guides` may have weights: Σ weight · value is then what a mean keeps. `variances`: by
 /// pixel, of the luminance of the parts together. Returns the error that is left, likewise: noise, and
 /// details taken for it.
-[[nodiscard]] std::vector<float> smooth_noise(const FilterImage& guides, FilterParts& parts,
+[[nodiscard]] std::vector<float> smooth_noise(FilterImage guides, FilterParts& parts,
                                               const std::vector<float>& variances, int levels, int threads);
+
+/// What smooth_noise holds for each pixel beside its arguments, of so many parts: coarse values and weights,
+/// noise and its weights, their energy, what is filtered next and what was before; details, and those kept.
+constexpr std::size_t smoothing_bytes(std::size_t parts) {
+    return (7 + 2 * parts) * sizeof(Spectrum) + sizeof(float);
+}
 
 /// Levels of the filter over which squares of noise are averaged: fewer values scatter too much themselves.
 inline constexpr int noise_levels = 2;
