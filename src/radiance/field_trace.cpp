@@ -11,9 +11,6 @@
 namespace relumine {
 namespace {
 
-/// The error that a few light samples may leave, of the mean over elements.
-constexpr double most_light_error = 0.03;
-
 /// Nearest distance that counts, metres: a bound for the logarithm.
 constexpr float least_distance = 1e-6f;
 
@@ -267,35 +264,18 @@ class LightSurvey {
           counts_(rays),
           contrast_(points.size()) {}
 
-    /// A packet of samples tells whether all find the same, as in full light; then they are enough. Not if
-    /// all find nothing: light through a small window would be lost wherever they miss it.
-    void run(ElementSurvey& survey, double mean_light) {
-        const auto few = static_cast<int>(packet_size);
-        if (settings_.light_samples > few) {
-            sample(0, few, 0x70696c6f74);
-            const float times = static_cast<float>(settings_.light_samples) / static_cast<float>(few);
-            if (sum_ > 0 && times * sum_error() <= most_light_error * mean_light) {
-                survey.light.add(light_, times);
-                return;
-            }
-            contrast_ = Contrast(points_.size());
-            light_ = {};
-        }
-        for (int first = 0; first < settings_.light_samples; first += few)
-            sample(first, settings_.light_samples, 0x6c6967687473);
+    void run(ElementSurvey& survey) {
+        for (int first = 0; first < settings_.light_samples; first += static_cast<int>(packet_size))
+            sample(first);
         survey.light = light_;
         survey.contrast = contrast_.over_noise() * static_cast<float>(settings_.light_samples);
     }
 
   private:
-    /// The standard error of the sum of what a packet's samples find.
-    [[nodiscard]] float sum_error() const {
-        constexpr auto n = static_cast<float>(packet_size);
-        return std::sqrt(std::max(0.0f, squares_ - sqr(sum_) / n) * n / (n - 1));
-    }
-
-    /// Sixteen of `count` samples, from `first` on.
-    void sample(int first, int count, std::uint64_t purpose) {
+    /// Sixteen samples, from `first` on.
+    void sample(int first) {
+        const int count = settings_.light_samples;
+        const std::uint64_t seed = hash(settings_.seed, 0x6c6967687473);
         StreamPacket streams;
         std::array<std::size_t, packet_size> points;
         Vec3Lanes from;
@@ -303,8 +283,7 @@ class LightSurvey {
         all.fill(-1);
         for (std::size_t lane = 0; lane < packet_size; ++lane) {
             const int i = first + static_cast<int>(lane);
-            streams[lane] =
-                element_stream(hash(settings_.seed, purpose), id_, static_cast<std::uint32_t>(i), count);
+            streams[lane] = element_stream(seed, id_, static_cast<std::uint32_t>(i), count);
             points[lane] = point_of(points_, i, count);
             from.set(lane, points_[points[lane]].position);
         }
@@ -351,8 +330,6 @@ class LightSurvey {
             lights.delta[p.lane] != 0 ? here : here + static_cast<float>(settings_.rays) * inv_pi * p.cosine;
         const Spectrum irradiance = passed * lights.radiance[p.lane] * (p.cosine / density);
         contrast_.add(p.point, luminance(irradiance));
-        sum_ += luminance(irradiance);
-        squares_ += sqr(luminance(irradiance));
         if (!is_black(irradiance))
             add_arriving(light_, normal_, turned(lights.w_in[p.lane], points_[p.point].normal, normal_),
                          irradiance);
@@ -366,7 +343,6 @@ class LightSurvey {
     RayCounts& counts_;
     Contrast contrast_;
     IrradianceVector light_;
-    float sum_ = 0, squares_ = 0;  // of what samples find
 };
 
 /// The geometric mean of distances to what is seen.
@@ -393,10 +369,9 @@ void add_arriving(IrradianceVector& vector, Vec3 normal, Vec3 direction, Spectru
 }
 
 ElementSurvey survey_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,
-                             ElementId id, double mean_light, const FieldSettings& settings,
-                             RayCounts& rays) {
+                             ElementId id, const FieldSettings& settings, RayCounts& rays) {
     ElementSurvey survey;
-    if (!t.lights.empty()) LightSurvey(t, normal, points, id, settings, rays).run(survey, mean_light);
+    if (!t.lights.empty()) LightSurvey(t, normal, points, id, settings, rays).run(survey);
     const std::uint64_t seed = hash(settings.seed, 0x64697374);
     survey.distance =
         middle_distance(trace_rays(t, points, id, static_cast<int>(packet_size), seed, rays).hits);

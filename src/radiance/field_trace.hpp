@@ -46,10 +46,9 @@ inline constexpr float least_tilt_cosine = 0.2f;
 void add_arriving(IrradianceVector& vector, Vec3 normal, Vec3 direction, Spectrum irradiance);
 
 /// Samples the lights from `points`, for an element of this normal, and looks how far other surfaces are.
-/// `mean_light`: that elements have on average, W·m⁻².
 [[nodiscard]] ElementSurvey survey_element(const Transport& t, Vec3 normal,
                                            std::span<const StartPoint> points, ElementId id,
-                                           double mean_light, const FieldSettings& settings, RayCounts& rays);
+                                           const FieldSettings& settings, RayCounts& rays);
 
 /// Traces `count` rays over the hemispheres of `points`.
 [[nodiscard]] ElementView trace_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,

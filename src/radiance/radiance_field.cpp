@@ -219,8 +219,7 @@ class FieldBuilder {
                 FieldElement& element = cells_->elements()[id];
                 center(t_, *cells_, element, counts);
                 all[i].points = start_points(t_, *cells_, id, met_.of(id), settings_.seed, counts);
-                all[i].survey =
-                    survey_element(t_, element.normal, all[i].points, id, mean_light, settings_, counts);
+                all[i].survey = survey_element(t_, element.normal, all[i].points, id, settings_, counts);
                 if (t_.caustics)
                     t_.caustics->add_arriving(element, all[i].points, settings_.bounces, all[i].survey.light);
             });
