@@ -2,11 +2,8 @@
 // What the elements of a radiance field see: links to other elements, and light.
 #pragma once
 
-#include "base/ray_counts.hpp"
 #include "radiance/bright_cones.hpp"
-#include "radiance/field_points.hpp"
-#include "radiance/path.hpp"
-#include "radiance/radiance_field.hpp"
+#include "radiance/field_rays.hpp"
 
 namespace relumine {
 
@@ -20,13 +17,6 @@ struct Landing {
     std::uint16_t ray = 0;
 };
 
-/// What is known of an element before its rays are traced.
-struct ElementSurvey {
-    IrradianceVector light;     // that samples of the lights bring
-    float contrast = 0;         // W·m⁻²: how far that differs between the points, over noise
-    float distance = infinity;  // metres, the geometric mean of what is seen
-};
-
 /// What an element's rays have found.
 struct ElementView {
     std::vector<Landing> landings;
@@ -35,20 +25,6 @@ struct ElementView {
     IrradianceVector strongest;  // part of it: the most that a single ray found along lobes
     std::vector<float> finds;    // luminance that rays found along lobes, where that is any
 };
-
-/// The random numbers of a ray.
-[[nodiscard]] SampleStream element_stream(std::uint64_t seed, ElementId element, std::uint32_t ray, int rays);
-
-/// A light's direction turns the irradiance vector no farther than from this cosine.
-inline constexpr float least_tilt_cosine = 0.2f;
-
-/// Adds light from `direction` that gives `irradiance` on the surface of this normal.
-void add_arriving(IrradianceVector& vector, Vec3 normal, Vec3 direction, Spectrum irradiance);
-
-/// Samples the lights from `points`, for an element of this normal, and looks how far other surfaces are.
-[[nodiscard]] ElementSurvey survey_element(const Transport& t, Vec3 normal,
-                                           std::span<const StartPoint> points, ElementId id,
-                                           const FieldSettings& settings, RayCounts& rays);
 
 /// Traces `count` rays over the hemispheres of `points`.
 [[nodiscard]] ElementView trace_element(const Transport& t, Vec3 normal, std::span<const StartPoint> points,

@@ -51,6 +51,8 @@ struct FieldFigures {
     double unresolved = 0;  // share of the links that led nowhere
 };
 
+struct BuiltField;
+
 class RadianceField {
   public:
     /// A function of scene, seeds and settings alone, whatever the number of threads.
@@ -76,14 +78,13 @@ class RadianceField {
     [[nodiscard]] const FieldCells& cells() const { return cells_; }
 
   private:
-    RadianceField(const Transport& t, std::span<const FieldSeed> seeds, const FieldSettings& settings,
-                  RayCounts& rays, NoisyLight noisy);
+    RadianceField(const Transport& t, BuiltField built, int threads, RayCounts& rays);
 
-    FieldFigures figures_;                   // filled while cells_ is made
-    BrightCones cones_;                      // likewise
-    std::vector<ElementArrivals> arrivals_;  // likewise, by element
-    float mean_radiance_ = 0;                // likewise
-    float most_found_ = 0;                   // likewise
+    FieldFigures figures_;
+    BrightCones cones_;
+    std::vector<ElementArrivals> arrivals_;  // by element
+    float mean_radiance_ = 0;
+    float most_found_ = 0;
     FieldCells cells_;
     FieldNeighbors neighbors_;
 };
