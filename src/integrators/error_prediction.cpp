@@ -10,11 +10,21 @@ constexpr float unseen = 0.3f;
 
 constexpr float least_albedo = 1e-5f;  // that anything is divided by
 
+/// Pixels that count in a mean over noise_levels of the filter, (Σw)² / Σw², on an open plane.
+constexpr float averaged_pixels = 65.6f;
+
 /// Samples are spread well over the pixel: of an edge through it, only those near the edge are in doubt.
 float variance_of_samples(float count, float sum, float squares) {
     if (count < 2) return 0;
     const float spread = std::max(0.0f, squares - sum * sum / count) / (count - 1);
     return spread * std::sqrt(count);
+}
+
+/// So many of the pixels that a mean of squares comes from matter in it, by the mean of their own squares:
+/// a single rare find is one source.
+float sources_of(float mean, float mean_square) {
+    if (!(mean_square > 0)) return 1;
+    return std::max(1.0f, averaged_pixels * mean * (mean / mean_square));
 }
 
 }  // namespace
@@ -58,10 +68,18 @@ std::vector<float> noise_variances(const FilterImage& guides, std::span<const Pi
         const NoiseEstimate& noise = d.*kind;
         image.values.push_back({noise.independent * scale, noise.halves * scale, noise.rays});
     }
+    std::vector<Spectrum> means = image.values;
+    for (Spectrum& v : image.values) v = Spectrum{sqr(v.r)};
     filter_along_surfaces(image, noise_levels, threads);
+    std::swap(image.values, means);
+    filter_along_surfaces(image, noise_levels, threads);
+    std::swap(image.values, means);
     std::vector<float> variances;
     variances.reserve(doubts.size());
-    for (const Spectrum& v : image.values) variances.push_back(variance_of_sum({v.r, v.g, v.b}));
+    for (std::size_t i = 0; i < doubts.size(); ++i) {
+        const Spectrum& v = means[i];
+        variances.push_back(variance_of_sum({v.r, v.g, v.b, sources_of(v.r, image.values[i].r)}));
+    }
     return variances;
 }
 

@@ -80,6 +80,13 @@ TEST(RayNoise, OfFewRaysIsWhatTheySay) {
     EXPECT_EQ(variance_of_sum({2, 5, 64}), 2);
 }
 
+TEST(RayNoise, FewSourcesDoNotTellHowWellPointsAreSpread) {
+    EXPECT_GT(variance_of_sum({1, 0, 64, 1}), 1);             // a single find, its halves alike by chance
+    EXPECT_LT(variance_of_sum({1, 0.01f, 64, 1e4f}), 0.05f);  // many that agree
+    EXPECT_FLOAT_EQ(variance_of_sum({1, 2, 64, 4}), 1.5f);
+    EXPECT_LT(variance_of_sum({1, 0.01f, 64, 60}), variance_of_sum({1, 0.01f, 64, 10}));
+}
+
 TEST(RayNoise, ScalesWithTheSquare) {
     RayNoise a, b;
     a.rays = 4;
