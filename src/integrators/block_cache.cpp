@@ -3,6 +3,7 @@
 // rays; then the filter over what the residual rays have found.
 #include "integrators/block_cache.hpp"
 
+#include <algorithm>
 #include <mutex>
 
 #include "base/executor.hpp"
@@ -208,12 +209,28 @@ class BlockCache final : public Integrator {
         return static_cast<std::uint32_t>(point.vertex.point.material - transport_.scene.materials.data());
     }
 
+    [[nodiscard]] static bool of_one_surface(const GBufferPixel& a, const GBufferPixel& b) {
+        constexpr float least_cosine = 0.95f;
+        return a.point->vertex.point.material == b.point->vertex.point.material
+               && dot(a.point->vertex.point.frame.n, b.point->vertex.point.frame.n) > least_cosine;
+    }
+
+    /// Of the surface that most samples show: a pixel that has only its rim in one would be alone.
     FilterGuide guide_of(const CellRow& row, int x, int y) const {
-        for (const auto& samples : row.samples)
-            if (const GBufferPixel& pixel = samples->at(x, y); pixel.reflects_alone)
-                return {pixel.cache.gather.position, pixel.point->vertex.point.frame.n, pixel.cache.footprint,
-                        material_of(*pixel.point)};
-        return {};
+        const GBufferPixel* shown = nullptr;
+        std::size_t most = 0;
+        for (const auto& samples : row.samples) {
+            const GBufferPixel& pixel = samples->at(x, y);
+            if (!pixel.reflects_alone || (shown && of_one_surface(*shown, pixel))) continue;
+            const auto alike =
+                static_cast<std::size_t>(std::ranges::count_if(row.samples, [&](const auto& s) {
+                    return s->at(x, y).reflects_alone && of_one_surface(pixel, s->at(x, y));
+                }));
+            if (alike > most) shown = &pixel, most = alike;
+        }
+        if (!shown) return {};
+        return {shown->cache.gather.position, shown->point->vertex.point.frame.n, shown->cache.footprint,
+                material_of(*shown->point)};
     }
 
     const Transport& transport_;
