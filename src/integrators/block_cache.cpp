@@ -57,7 +57,7 @@ class BlockCache final : public Integrator {
     [[nodiscard]] std::uint64_t known_bytes() const override {  // of records and maps the least
         const auto row =
             static_cast<std::size_t>(std::min(view_.window.width() + 5 * cell_pixels, view_.width));
-        return count(region()) * (sizeof(PixelSums) + found_.bytes_per_pixel())
+        return count(region()) * sizeof(PixelSums) + found_.bytes(region().width(), region().height())
                + 3 * row * cell_pixels * samples_per_pass * sizeof(GBufferPixel) + least_bytes();
     }
     void keep_within(std::uint64_t bytes) override {
@@ -69,19 +69,22 @@ class BlockCache final : public Integrator {
     void prepare(Preparation& p) override {
         region_ = region();
         pixels_.assign(count(region_), {});
-        found_.begin(region_.width(), region_.height());
+        found_.begin(region_.width());
+        const ResidualFilm::Adding how{plan_.exact, !split_.empty(), p.threads};
         constexpr int margin = CellRows::reach * cell_pixels;
         const MapSource maps{map_source_, split_, grid_, environment_};
         CellRows rows({transport_, view_, surface_layers_, max_depth_, maps}, plan_, region_);
         for (int y = region_.y0 - margin; y < region_.y1 + margin && !p.stop(); y += cell_pixels) {
             rows.take_in(y, p);
             if (!rows.ready()) continue;
+            found_.take_in(std::min(rows.ready()->rect.y1, region_.y1) - region_.y0);
             light_row(rows, p);
             rows.release();
+            found_.add_to(pixels_, how);
             if (p.progress) p.progress(static_cast<double>(y - cell_pixels - region_.y0) / region_.height());
         }
         // After a stop, too: what is lit may be all there is to show.
-        found_.add_to(pixels_, plan_.exact, !split_.empty(), p.threads);
+        found_.finish(pixels_, how);
     }
 
     void render(Tile& tile) const override {
@@ -160,7 +163,7 @@ class BlockCache final : public Integrator {
         for (const LitSample& sample : cell.at(x, y)) finish_sample(sample, sums, residual, doubt, rays);
         pixels_[index_of(x, y)] = sums.pixels[0];
         if (found_.estimates_noise())
-            found_.put(index_of(x, y), residual, doubt.finish(), guide_of(row, x, y));
+            found_.put(x - region_.x0, y - region_.y0, residual, doubt.finish(), guide_of(row, x, y));
     }
 
     /// Adds a sample with all its light; what is to be filtered goes into `residual` instead.
