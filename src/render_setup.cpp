@@ -80,7 +80,7 @@ Tracer make_tracer(const SceneData& scene) {
         scene,
         [&scene](const Hit& hit) {
             const Mesh& mesh = scene.meshes[index(scene.instances[hit.instance].mesh)];
-            return opacity(scene, scene.materials[index(mesh.material)], texture_coordinates(mesh, hit));
+            return opacity(scene, scene.materials[index(mesh.material)], texture_coordinates(scene, hit));
         },
         {[&scene](const Mesh& mesh) { return pane_kind(scene, mesh); },
          [&scene](const Hit& hit, WorldDir direction) { return pane_transmittance(scene, hit, direction); }}};

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/equal_area.hpp"
+#include "base/hash.hpp"
+#include "image/byte_image.hpp"
 #include "integrators/camera_rays.hpp"
 #include "scene/test_files.hpp"
 #include "tests/render_support.hpp"
@@ -245,6 +247,146 @@ TEST(PbrtRender, AgreesWithTheSameSceneBuiltInMemory) {
         for (int x = 0; x < 16; ++x)
             for (std::size_t c = 0; c < 3; ++c)
                 EXPECT_NEAR(a.rgb(x, y)[c], b.rgb(x, y)[c], 1e-3f) << x << ' ' << y;
+}
+
+/// What a diffuse scene reflects and where it is, seen from −Z over x and y from −2 to 2.
+struct Painted {
+    std::vector<float> color;  // red
+    std::vector<Vec3> position;
+};
+
+constexpr int painted_side = 32;
+
+Painted painted(const TempFolder& folder, const std::string& world) {
+    const Scene scene =
+        load_scene(folder.write("scene.pbrt",
+                                "LookAt 0 0 -9  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" "
+                                "[-2 2 -2 2]\nWorldBegin\nLightSource \"infinite\"\n"
+                                    + world));
+    RenderSettings settings = one_sample();
+    settings.width = settings.height = painted_side;
+    settings.pixel_sampling = "center";
+    settings.aovs = {"albedo", "position"};
+    const Image image = render(scene, settings);
+    const auto& colors = image.layer("albedo")->pixels;
+    const auto& positions = image.layer("position")->pixels;
+    Painted seen;
+    for (std::size_t i = 0; i < colors.size(); i += 3) {
+        seen.color.push_back(colors[i]);
+        seen.position.push_back({positions[i], positions[i + 1], positions[i + 2]});
+    }
+    return seen;
+}
+
+constexpr int grain = 8;  // texels along each side of the picture
+
+std::uint8_t grain_value(int x, int y) {
+    return static_cast<std::uint8_t>(40 + hash(static_cast<std::uint64_t>(y * grain + x), 7) % 200);
+}
+
+/// A linear picture named p.png of grains, read without interpolation.
+std::string grain_texture(const TempFolder& folder, const std::string& mapping) {
+    std::vector<std::uint8_t> rgb;
+    for (int y = 0; y < grain; ++y)
+        for (int x = 0; x < grain; ++x) rgb.insert(rgb.end(), 3, grain_value(x, y));
+    const auto png = encode_png(grain, grain, rgb);
+    (void)folder.write("p.png", {reinterpret_cast<const char*>(png.data()), png.size()});
+    return "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"p.png\" \"string encoding\" "
+           "\"linear\" "
+           "\"string filter\" \"point\" "
+           + mapping + "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n";
+}
+
+/// The grain at (s, t), t upwards; nothing near the border of one.
+std::optional<float> grain_at(double s, double t) {
+    const double x = (s - std::floor(s)) * grain, y = (1 - (t - std::floor(t))) * grain;
+    const auto near_border = [](double c) { return std::abs(c - std::round(c)) < 1e-3; };
+    if (near_border(x) || near_border(y)) return {};
+    return static_cast<float>(grain_value(static_cast<int>(x), static_cast<int>(y))) / 255;
+}
+
+/// Whether `coordinates(position)` say what every pixel shows.
+template <typename Coordinates>
+void expect_painted(const Painted& seen, const Coordinates& coordinates) {
+    int compared = 0;
+    for (std::size_t i = 0; i < seen.color.size(); ++i) {
+        const auto [s, t] = coordinates(seen.position[i]);
+        const std::optional<float> wanted = grain_at(s, t);
+        if (!wanted) continue;
+        ASSERT_NEAR(seen.color[i], *wanted, 1e-3f) << i % painted_side << ' ' << i / painted_side;
+        ++compared;
+    }
+    EXPECT_GT(compared, painted_side * painted_side * 9 / 10);
+}
+
+constexpr double turn = 2 * 3.14159265358979323846;
+
+TEST(PbrtMapping, SphericalAndCylindricalActAtEveryPoint) {  // of two large triangles
+    const TempFolder folder;
+    const std::string move = "AttributeBegin Translate .3 .2 -.7\n", back = "AttributeEnd\n";
+    const auto world = [&](const std::string& kind) {
+        // what is declared within an attribute keeps its transform and is known outside
+        const std::string texture = grain_texture(folder, "\"string mapping\" \"" + kind + "\"");
+        const std::size_t end = texture.find('\n') + 1;
+        return move + texture.substr(0, end) + back + texture.substr(end) + square;
+    };
+    expect_painted(painted(folder, world("spherical")), [](Vec3 p) {
+        const double x = double{p.x} - .3, y = double{p.y} - .2, z = double{p.z} + .7;
+        const double around = std::atan2(y, x) / turn;
+        return std::pair{2 * std::acos(z / std::hypot(x, y, z)) / turn, around < 0 ? around + 1 : around};
+    });
+    expect_painted(painted(folder, world("cylindrical")), [](Vec3 p) {
+        const double x = double{p.x} - .3, y = double{p.y} - .2, z = double{p.z} + .7;
+        return std::pair{0.5 + std::atan2(y, x) / turn, z};
+    });
+}
+
+TEST(PbrtMapping, InstancesAreMappedWhereTheyStand) {
+    const TempFolder folder;
+    const std::string object =
+        "ObjectBegin \"o\"\nShape \"trianglemesh\" \"point3 P\" [-2 -1 0  2 -1 0  2 1 0  -2 1 0] "
+        "\"integer indices\" [0 2 1 0 3 2]\nObjectEnd\n"
+        "AttributeBegin Translate 0 1 0 ObjectInstance \"o\" AttributeEnd\n"
+        "AttributeBegin Translate 0 -1 0 Scale -1 1 1 ObjectInstance \"o\" AttributeEnd\n";
+    const std::string planar =
+        "\"string mapping\" \"planar\" \"vector3 v1\" [.4 .1 0] \"vector3 v2\" [0 .3 0] \"float udelta\" .2";
+    expect_painted(painted(folder, grain_texture(folder, planar) + object), [](Vec3 p) {
+        return std::pair{.2 + .4 * double{p.x} + .1 * double{p.y}, .3 * double{p.y}};
+    });
+}
+
+TEST(PbrtMapping, DirectionMixesByWhereSurfacesFace) {
+    const TempFolder folder;
+    const std::string mix =
+        "Texture \"m\" \"spectrum\" \"directionmix\" \"rgb tex1\" [.8 .8 .8] \"rgb tex2\" [.1 .1 .1] "
+        "\"vector3 dir\" [0 3 0]\nMaterial \"diffuse\" \"texture reflectance\" \"m\"\n";
+    const Painted ball = painted(folder, mix + "Shape \"sphere\" \"float radius\" 2.9");
+    for (std::size_t i = 0; i < ball.color.size(); ++i) {
+        const float facing = std::abs(ball.position[i].y) / 2.9f;
+        ASSERT_NEAR(ball.color[i], .1f + .7f * facing, 2e-3f) << i;
+    }
+    // A mesh faces as its triangles do, whatever its vertices' normals say; "dir" is of the texture's space.
+    const std::string turned = "Rotate 60 1 0 0\n";
+    const std::string slope =
+        "Shape \"trianglemesh\" \"point3 P\" [-9 -9 0  9 -9 0  9 9 0  -9 9 0] \"integer indices\" [0 2 1 0 3 "
+        "2] "
+        "\"normal N\" [0 -.6 -.8 0 -.6 -.8 0 -.6 -.8 0 -.6 -.8]\n";
+    for (const float c : painted(folder, mix + turned + slope).color)
+        ASSERT_NEAR(c, .1f + .7f * .8660254f, 1e-3f);
+    for (const float c : painted(folder, turned + mix + slope).color) ASSERT_NEAR(c, .1f, 1e-3f);
+}
+
+TEST(PbrtMapping, DirectionMixesOfPictures) {
+    const TempFolder folder;
+    std::string texture = grain_texture(
+        folder, "\"string mapping\" \"planar\" \"vector3 v1\" [.3 0 0] \"vector3 v2\" [0 .3 0]");
+    texture +=
+        "Texture \"m\" \"spectrum\" \"directionmix\" \"texture tex1\" \"t\" \"rgb tex2\" [1 1 1] \"vector3 "
+        "dir\" [0 0 1]\n"
+        "Material \"diffuse\" \"texture reflectance\" \"m\"\nRotate 60 1 0 0\n";
+    Painted seen = painted(folder, texture + square);
+    for (float& c : seen.color) c = 2 * c - 1;  // half of it is white
+    expect_painted(seen, [](Vec3 p) { return std::pair{.3 * double{p.x}, .3 * double{p.y}}; });
 }
 
 TEST(PbrtRender, ThinLensesBlurWhatIsOutOfFocus) {

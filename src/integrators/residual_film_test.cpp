@@ -21,8 +21,9 @@ void put_row(ResidualFilm& film, int y) {
         const Spectrum found{random(x, y, 1)}, albedo{0.2f + 0.5f * random(x, y, 2)};
         PixelDoubt doubt{{0.1f, 0.1f, 4}, {0.05f, 0.02f, 4}, luminance(albedo), 0.1f, 0.01f};
         const std::uint32_t surface = 40 * x > y ? 1 : 0;
-        film.put(x, y, {found, found * 0.5f, found * 2, albedo}, doubt,
-                 {{0.01f * static_cast<float>(x), 0.01f * static_cast<float>(y), 0}, {0, 0, 1}, 0.01f, surface});
+        film.put(
+            x, y, {found, found * 0.5f, found * 2, albedo}, doubt,
+            {{0.01f * static_cast<float>(x), 0.01f * static_cast<float>(y), 0}, {0, 0, 1}, 0.01f, surface});
     }
 }
 

@@ -27,7 +27,7 @@ Spectrum met_share(const Transport& t, const Hit& hit, WorldDir direction) {
     if (pane_kind(t.scene, mesh) != Pane::none)
         return Spectrum{1 - max_component(pane_transmittance(t.scene, hit, direction))};
     const Material& material = t.scene.materials[index(mesh.material)];
-    return Spectrum{opacity(t.scene, material, texture_coordinates(mesh, hit))};
+    return Spectrum{opacity(t.scene, material, texture_coordinates(t.scene, hit))};
 }
 
 /// Follows one photon after the other.

@@ -106,6 +106,9 @@ void MaterialChecker::texture(const std::optional<TextureRef>& ref, std::string_
     if (!ref) return;
     if (index(ref->image) >= scene_.images.size())
         refuse(what, fmt::format("below {}", scene_.images.size()), fmt::format("{}", index(ref->image)));
+    if (ref->turned_away && index(*ref->turned_away) >= scene_.images.size())
+        refuse(what, fmt::format("below {}", scene_.images.size()),
+               fmt::format("{}", index(*ref->turned_away)));
     if (ref->uv_set != 0 && ref->uv_set != 1)
         refuse(what, "with UV set 0 or 1", fmt::format("set {}", ref->uv_set));
     if (!std::ranges::all_of(ref->uv_transform, [](float x) { return std::isfinite(x); }))

@@ -251,7 +251,11 @@ TEST(FinishScene, RefusesWhatCannotBeRepaired) {
         [](SceneData& s) { s.materials[0].emission_texture = TextureRef{}; },
         [](SceneData& s) {
             s.images.resize(1);
-            s.materials[0].emission_texture = TextureRef{.image = {}, .uv_set = 2};
+            s.materials[0].emission_texture.emplace().uv_set = 2;
+        },
+        [](SceneData& s) {
+            s.images.resize(1);
+            s.materials[0].emission_texture.emplace().turned_away = ImageId{1};
         },
         [](SceneData& s) {
             s.point_lights.push_back({{nan, 0, 0}, Spectrum{1}});

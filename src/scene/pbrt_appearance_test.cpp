@@ -2,6 +2,7 @@
 // What pbrt scenes look like: materials, textures, lights and spectra.
 #include "base/equal_area.hpp"
 #include "image/byte_image.hpp"
+#include "relumine/error.hpp"
 #include "scene/pbrt_spectrum.hpp"
 #include "scene/pbrt_test_scenes.hpp"
 #include "scene/pbrt_transform.hpp"
@@ -248,7 +249,23 @@ TEST(PbrtTextures, PlanarMappingsReadPositions) {
                  + std::string{triangle});
     const Mesh& mesh = scene.meshes.at(0);
     EXPECT_EQ(scene.materials.at(0).base_color_texture->uv_set, 1);
-    EXPECT_EQ(mesh.uvs[1].at(1), (Vec2{2, 1}));  // s = 2 x; t = z of the texture's space = 0
+    ASSERT_NE(mesh.projection, nullptr);
+    EXPECT_EQ(mesh.projection->kind, TextureProjection::Kind::planar);
+    // s = 2 x; t = z of the texture's space
+    expect_near(mesh.projection->texture_from_world.point({1, 0, 5.5f}), {2, 0.5f, 0.5f});
+}
+
+TEST(PbrtTextures, OneDirectionForAMaterial) {
+    const auto mix = [](const std::string& name, const std::string& dir) {
+        return "Texture \"" + name + "\" \"float\" \"directionmix\" \"vector3 dir\" [" + dir + "]\n";
+    };
+    const std::string glossy =
+        "Material \"conductor\" \"texture uroughness\" \"a\" \"texture vroughness\" \"b\"\n";
+    EXPECT_FALSE(warns(read(mix("a", "0 1 0") + mix("b", "0 2 0") + glossy + triangle), "directions"));
+    EXPECT_TRUE(warns(read(mix("a", "0 1 0") + mix("b", "1 0 0") + glossy + triangle), "several directions"));
+    EXPECT_THROW(
+        (void)read(mix("a", "0 0 0") + "Material \"conductor\" \"texture roughness\" \"a\"\n" + triangle),
+        SceneError);
 }
 
 TEST(PbrtLights, PointsSpotsAndDistantOnes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pbrt's textures: evaluating graphs of nodes into images, and coordinates from positions.
+// pbrt's textures: evaluating graphs of nodes into images.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +19,7 @@ struct At {
     Vec2 base;                       // u, v upwards, before the leaf's own scale
     const PbrtNode* leaf = nullptr;  // read at texel (x, y), or cell of that parity
     int x = 0, y = 0;
+    bool facing = true;  // mixes by direction show their first input, else their second
 };
 
 Vec2 map_uv(const PbrtMapping& m, Vec2 base) {
@@ -68,6 +69,8 @@ Spectrum evaluate(const PbrtNode& node, const At& at) {
                                     : read_image_node(node, map_uv(node.mapping, at.base));
         case PbrtNode::Kind::checkerboard:
             return evaluate(*node.input[first_cell(node, at) ? 0 : 1], at);
+        case PbrtNode::Kind::direction_mix:
+            return evaluate(*node.input[at.facing ? 0 : 1], at);
         case PbrtNode::Kind::scale:
             return evaluate(*node.input[0], at) * evaluate(*node.input[1], at);
         case PbrtNode::Kind::mix:
@@ -207,107 +210,82 @@ PbrtTextures::Grid PbrtTextures::choose_grid(const std::vector<const PbrtNode*>&
     return grid;
 }
 
-PbrtBaked PbrtTextures::bake(const std::vector<PbrtNodeRef>& nodes, const PbrtCombine& combine, bool srgb,
-                             bool plain, const std::array<Vec2, 2>& domain, const PbrtPlace& place) {
-    std::vector<const PbrtNode*> leaves;
-    for (const PbrtNodeRef& node : nodes) collect_leaves(node, leaves);
-    PbrtBaked baked;
-    if (leaves.empty()) {
-        baked.value = combined(nodes, combine, {});
-        return baked;
-    }
-    const PbrtNode& leaf = *leaves[0];
-    Grid grid = choose_grid(leaves, domain, place);
-    baked.mapping = leaf.mapping;
-    baked.by_domain = grid.by_domain;
-    const bool as_it_is = plain && srgb && nodes[0].get() == grid.leaf && leaf.pixels && leaf.pixels->srgb8
-                          && !leaf.invert && leaf.factor == 1;
-    if (as_it_is) {
-        const auto known = shared_images_.find(leaf.pixels->srgb8.get());
-        grid.ref.image =
-            known != shared_images_.end() ? known->second : add_image(*leaf.pixels->srgb8, place);
-        shared_images_[leaf.pixels->srgb8.get()] = grid.ref.image;
-        baked.texture = grid.ref;
-        return baked;
-    }
+/// The axis that mixes by direction ask for.
+Vec3 PbrtTextures::find_axis(const std::vector<PbrtNodeRef>& nodes, const PbrtPlace& place) {
+    std::vector<const PbrtNode*> mixes;
+    for (const PbrtNodeRef& node : nodes) collect_direction_mixes(node, mixes);
+    for (const PbrtNode* mix : mixes)
+        if (!(mix->axis == mixes[0]->axis))
+            scene_.warn(place, "one material mixes by several directions: the first of them stands for all");
+    return mixes.empty() ? Vec3{} : mixes[0]->axis;
+}
+
+ByteImage PbrtTextures::baked_image(const Grid& grid, const std::vector<PbrtNodeRef>& nodes,
+                                    const PbrtCombine& combine, bool srgb, bool facing) const {
     ByteImage image = blank(grid.width, grid.height);
-    const bool cells = leaf.kind == PbrtNode::Kind::checkerboard;  // row 0 is the upper one
+    const bool cells =
+        grid.leaf && grid.leaf->kind == PbrtNode::Kind::checkerboard;  // row 0 is the upper one
     for (int y = 0; y < grid.height; ++y) {
         for (int x = 0; x < grid.width; ++x) {
             const float s = (static_cast<float>(x) + 0.5f) / static_cast<float>(grid.width);
             const float t = 1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(grid.height);
             const Vec2 base{grid.base_low.x + s * grid.base_size.x, grid.base_low.y + t * grid.base_size.y};
-            const At at{base, grid.leaf, x, cells ? grid.height - 1 - y : y};
+            const At at{base, grid.leaf, x, cells ? grid.height - 1 - y : y, facing};
             put(image, x, y, combined(nodes, combine, at), srgb);
         }
     }
-    grid.ref.image = add_image(std::move(image), place);
+    return image;
+}
+
+PbrtBaked PbrtTextures::bake(const std::vector<PbrtNodeRef>& nodes, const PbrtCombine& combine, bool srgb,
+                             bool plain, const std::array<Vec2, 2>& domain, const PbrtPlace& place) {
+    std::vector<const PbrtNode*> leaves;
+    for (const PbrtNodeRef& node : nodes) collect_leaves(node, leaves);
+    PbrtBaked baked;
+    baked.axis = find_axis(nodes, place);
+    const bool by_direction = length_squared(baked.axis) > 0;
+    if (leaves.empty() && !by_direction) {
+        baked.value = combined(nodes, combine, {});
+        return baked;
+    }
+    Grid grid = leaves.empty() ? Grid{} : choose_grid(leaves, domain, place);
+    if (!leaves.empty()) baked.mapping = leaves[0]->mapping;
+    baked.by_domain = grid.by_domain;
+    const PbrtNode* leaf = grid.leaf;
+    const bool as_it_is = plain && srgb && leaf && nodes[0].get() == leaf && leaf->pixels
+                          && leaf->pixels->srgb8 && !leaf->invert && leaf->factor == 1;
+    if (as_it_is) {
+        const auto known = shared_images_.find(leaf->pixels->srgb8.get());
+        grid.ref.image =
+            known != shared_images_.end() ? known->second : add_image(*leaf->pixels->srgb8, place);
+        shared_images_[leaf->pixels->srgb8.get()] = grid.ref.image;
+        baked.texture = grid.ref;
+        return baked;
+    }
+    grid.ref.image = add_image(baked_image(grid, nodes, combine, srgb, true), place);
+    if (by_direction) grid.ref.turned_away = add_image(baked_image(grid, nodes, combine, srgb, false), place);
     baked.texture = grid.ref;
     return baked;
 }
 
-namespace {
-
-Vec2 mapped(const PbrtMapping& m, const std::array<double, 3>& p) {
-    const auto f = [](double x) { return static_cast<float>(x); };
-    if (m.kind == PbrtMapping::Kind::planar)
-        return {f(m.offset[0] + p[0] * m.axis_u[0] + p[1] * m.axis_u[1] + p[2] * m.axis_u[2]),
-                f(m.offset[1] + p[0] * m.axis_v[0] + p[1] * m.axis_v[1] + p[2] * m.axis_v[2])};
-    if (m.kind == PbrtMapping::Kind::cylindrical)
-        return {f((pi_d + std::atan2(p[1], p[0])) / (2 * pi_d)), f(p[2])};
-    const double length = std::hypot(p[0], p[1], p[2]);
-    const double theta = length > 0 ? std::acos(std::clamp(p[2] / length, -1.0, 1.0)) : 0;
-    const double phi = std::atan2(p[1], p[0]);
-    return {f(theta / pi_d), f((phi < 0 ? phi + 2 * pi_d : phi) / (2 * pi_d))};
-}
-
-template <typename T>
-void split_attribute(std::vector<T>& values, const std::vector<Triangle>& triangles) {
-    if (values.empty()) return;
-    std::vector<T> split;
-    split.reserve(3 * triangles.size());
-    for (const Triangle& t : triangles)
-        for (const std::uint32_t vertex : t.vertex) split.push_back(values[vertex]);
-    values = std::move(split);
-}
-
-void split_vertices(Mesh& mesh) {
-    split_attribute(mesh.positions, mesh.triangles);
-    split_attribute(mesh.normals, mesh.triangles);
-    split_attribute(mesh.uvs[0], mesh.triangles);
-    split_attribute(mesh.uvs[1], mesh.triangles);
-    std::uint32_t next = 0;
-    for (Triangle& t : mesh.triangles)
-        for (std::uint32_t& vertex : t.vertex) vertex = next++;
-}
-
-}  // namespace
-
-void add_mapped_uvs(Mesh& mesh, const PbrtMapping& mapping, const Transform& world_from_object) {
-    const bool wraps = mapping.kind != PbrtMapping::Kind::planar;
-    if (wraps) split_vertices(mesh);
-    const Transform texture_from_object = mapping.texture_from_world * world_from_object;
-    std::vector<Vec2>& uvs = mesh.uvs[1];
-    uvs.clear();
-    for (const Vec3 p : mesh.positions) {
-        std::array<double, 3> q{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto& r = texture_from_object.m[i];
-            q[i] = r[0] * double{p.x} + r[1] * double{p.y} + r[2] * double{p.z} + r[3];
+std::shared_ptr<const TextureProjection> make_projection(const PbrtMapping& mapping, Vec3 axis, bool smooth) {
+    using Kind = PbrtMapping::Kind;
+    if (mapping.kind == Kind::uv && length_squared(axis) == 0) return {};
+    TextureProjection projection{TextureProjection::Kind::none, mapping.texture_from_world, axis, smooth};
+    if (mapping.kind == Kind::spherical) projection.kind = TextureProjection::Kind::spherical;
+    if (mapping.kind == Kind::cylindrical) projection.kind = TextureProjection::Kind::cylindrical;
+    if (mapping.kind == Kind::planar) {
+        projection.kind = TextureProjection::Kind::planar;
+        Transform st_from_texture;
+        for (std::size_t j = 0; j < 3; ++j) {
+            st_from_texture.m[0][j] = mapping.axis_u[j];
+            st_from_texture.m[1][j] = mapping.axis_v[j];
         }
-        uvs.push_back(mapped(mapping, q));
+        st_from_texture.m[0][3] = mapping.offset[0];
+        st_from_texture.m[1][3] = mapping.offset[1];
+        projection.texture_from_world = st_from_texture * mapping.texture_from_world;
     }
-    const bool spherical = mapping.kind == PbrtMapping::Kind::spherical;
-    if (wraps) {
-        for (const Triangle& t :
-             mesh.triangles) {  // the angle of a triangle's corners must not jump by a turn
-            const auto angle = [&](std::uint32_t v) -> float& { return spherical ? uvs[v].y : uvs[v].x; };
-            const float top = std::max({angle(t.vertex[0]), angle(t.vertex[1]), angle(t.vertex[2])});
-            for (const std::uint32_t vertex : t.vertex)
-                if (top - angle(vertex) > 0.5f) angle(vertex) += 1;
-        }
-    }
-    for (Vec2& uv : uvs) uv.y = 1 - uv.y;
+    return std::make_shared<const TextureProjection>(projection);
 }
 
 }  // namespace relumine

@@ -25,6 +25,12 @@ Vec4 opaque(Spectrum c) { return {c.r, c.g, c.b, 1}; }
 void PbrtMaterials::apply(const PbrtBaked& baked, std::optional<TextureRef>& ref, Draft& draft) {
     ref = baked.texture;
     draft.by_domain = draft.by_domain || baked.by_domain;
+    if (length_squared(baked.axis) > 0) {
+        if (length_squared(draft.axis) > 0 && !(draft.axis == baked.axis))
+            scene_.warn(draft.place,
+                        "one material mixes by several directions: only the last of them is read");
+        draft.axis = baked.axis;
+    }
     if (!ref || ref->uv_set == 0) return;
     if (draft.mapping && !(*draft.mapping == baked.mapping))
         scene_.warn(draft.place, "one material uses several mappings: only the last of them is read");
@@ -183,10 +189,14 @@ PbrtMaterials::Binding PbrtMaterials::make(const PbrtShape& shape, const PbrtEnt
     } else if (cut_out) {
         draft.visible = false;
     }
-    if (!draft.visible) return {{}, {}, false, false, false};
+    if (!draft.visible) return {{}, {}, {}, false, false, false};
     finish_textures(draft);
     out_.materials.push_back(std::move(draft.material));
-    return {static_cast<MaterialId>(out_.materials.size() - 1), draft.mapping, true, draft.by_domain,
+    return {static_cast<MaterialId>(out_.materials.size() - 1),
+            draft.mapping,
+            draft.axis,
+            true,
+            draft.by_domain,
             draft.inside_out};
 }
 

@@ -18,6 +18,7 @@ struct PbrtMaterials::Draft {
     bool remap = true;
     PbrtNodeRef alpha = constant_node(Spectrum{1});
     std::optional<PbrtMapping> mapping;
+    Vec3 axis;  // that surfaces may face; 0: it does not matter
     std::array<Vec2, 2> domain{};
     PbrtNodeRef normal;         // of the normal map, or null
     PbrtNodeRef transmittance;  // diffuse; null: none

@@ -32,6 +32,7 @@ class PbrtMaterials {
     struct Binding {
         MaterialId material{};
         std::optional<PbrtMapping> mapping;  // of uv set 1
+        Vec3 axis;                           // that surfaces may face; 0: it does not matter
         bool visible = true;                 // false: an interface between media, or cut out whole
         bool by_domain = false;              // baked over one range of u and v
         bool inside_out = false;             // the mesh's sides must change places

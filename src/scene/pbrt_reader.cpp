@@ -114,7 +114,7 @@ class ShapeBuilder {
         double area = 0;
         for (const Triangle& t : mesh.triangles) area += triangle_area(mesh, t, world_from_object);
         if (patches) area /= std::max(1.0, double(shape.entity.parameters.indices("indices").size() / 4));
-        return add(shape, std::move(mesh), world_from_object, area, key);
+        return add(shape, std::move(mesh), area, key);
     }
 
     /// Equal for quadrics that may share a mesh; "" for other shapes.
@@ -149,21 +149,20 @@ class ShapeBuilder {
         }
         std::vector<MeshId> ids;
         for (auto& [key, part] : by_area)
-            for (const MeshId id : add(shape, std::move(part), world_from_object, areas[key], ""))
-                ids.push_back(id);
+            for (const MeshId id : add(shape, std::move(part), areas[key], "")) ids.push_back(id);
         return ids;
     }
 
-    std::vector<MeshId> add(const PbrtShape& shape, Mesh mesh, const Transform& world_from_object,
-                            double area, const std::string& key) {
+    std::vector<MeshId> add(const PbrtShape& shape, Mesh mesh, double area, const std::string& key) {
         const PbrtMaterials::Binding binding = materials_.bind(shape, uv_range(mesh), area);
         if (!binding.visible) return {};
         mesh.material = binding.material;
         if (binding.inside_out) turn_inside_out(mesh);
-        if (binding.mapping) add_mapped_uvs(mesh, *binding.mapping, world_from_object);
+        mesh.projection = make_projection(binding.mapping.value_or(PbrtMapping{}), binding.axis,
+                                          is_pbrt_quadric(shape.entity.type));
         out_.meshes.push_back(std::move(mesh));
         const auto id = static_cast<MeshId>(out_.meshes.size() - 1);
-        if (!key.empty() && !binding.mapping) shared_[key] = id;
+        if (!key.empty()) shared_[key] = id;
         return {id};
     }
 
@@ -195,6 +194,18 @@ void note_depth(PbrtScene& scene) {
                fmt::format("\"maxdepth\" {0} is not taken over: --max-depth {0} renders the same", depth));
 }
 
+/// The command decides on samples; we say how to get as many.
+void note_samples(PbrtScene& scene) {
+    if (!scene.sampler) return;
+    const PbrtParameters& p = scene.sampler->parameters;
+    const bool strata = p.has("xsamples") || p.has("ysamples");
+    if (!strata && !p.has("pixelsamples")) return;
+    const std::int64_t count = strata ? std::int64_t{p.integer("xsamples", 4)} * p.integer("ysamples", 4)
+                                      : std::int64_t{p.integer("pixelsamples", 16)};
+    scene.warn(p.place(),
+               fmt::format("{0} samples per pixel are not taken over: --spp {0} takes as many", count));
+}
+
 }  // namespace
 
 SceneData read_pbrt(const std::string& path, const SceneOptions& options) {
@@ -208,6 +219,7 @@ SceneData read_pbrt(const std::string& path, const SceneOptions& options) {
     add_pbrt_lights(scene, files, out);
     scale_lights(out, static_cast<float>(ratio));
     note_depth(scene);
+    note_samples(scene);
     for (std::string& warning : scene.warnings) out.warn(std::move(warning));
     return out;
 }

@@ -183,5 +183,15 @@ TEST(PbrtShapes, CurvesAreLeftOutWithAWarning) {
     EXPECT_TRUE(warns(scene, "scene.pbrt:4:1: shape \"curve\" is not supported"));
 }
 
+TEST(PbrtOptions, WhatTheCommandDecidesIsRepeated) {
+    const auto says = [](const std::string& options, const std::string& text) {
+        return warns(read(triangle, options), text);
+    };
+    EXPECT_TRUE(says("Sampler \"zsobol\" \"integer pixelsamples\" 64", "--spp 64"));
+    EXPECT_TRUE(says("Sampler \"stratified\" \"integer xsamples\" 3", "--spp 12"));
+    EXPECT_FALSE(says("Sampler \"zsobol\"", "--spp"));
+    EXPECT_TRUE(says("Integrator \"volpath\" \"integer maxdepth\" 7", "--max-depth 7"));
+}
+
 }  // namespace
 }  // namespace relumine

@@ -127,6 +127,12 @@ void collect_leaves(const PbrtNodeRef& node, std::vector<const PbrtNode*>& leave
         if (input) collect_leaves(input, leaves);
 }
 
+void collect_direction_mixes(const PbrtNodeRef& node, std::vector<const PbrtNode*>& mixes) {
+    if (node->kind == PbrtNode::Kind::direction_mix) mixes.push_back(node.get());
+    for (const PbrtNodeRef& input : node->input)
+        if (input) collect_direction_mixes(input, mixes);
+}
+
 std::shared_ptr<const PbrtPixels> PbrtTextures::pixels(const std::string& file, const std::string& encoding,
                                                        const PbrtPlace& place) {
     const std::string path = files_.resolve(file, place);
@@ -194,6 +200,19 @@ PbrtNodeRef PbrtTextures::mix_node(const PbrtParameters& p, bool is_float, PbrtS
     return node;
 }
 
+PbrtNodeRef PbrtTextures::direction_mix_node(const PbrtTexture& texture, bool is_float, PbrtSpectrumUse use) {
+    const PbrtParameters& p = texture.entity.parameters;
+    auto node = std::make_shared<PbrtNode>();
+    node->kind = PbrtNode::Kind::direction_mix;
+    node->input = {input(p, "tex1", 0, is_float, use), input(p, "tex2", 1, is_float, use), nullptr};
+    const auto [x, y, z] = p.vector("dir", {0, 1, 0});
+    node->axis = texture.world_from_texture.vector(
+        {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+    if (!(length_squared(node->axis) > 0)) p.refuse("dir", "a direction", "none");
+    node->axis = normalize(node->axis);
+    return node;
+}
+
 PbrtNodeRef PbrtTextures::checkerboard_node(const PbrtTexture& texture, bool is_float, PbrtSpectrumUse use) {
     const PbrtParameters& p = texture.entity.parameters;
     auto node = std::make_shared<PbrtNode>();
@@ -236,11 +255,7 @@ PbrtNodeRef PbrtTextures::make(const PbrtTexture& texture, bool is_float, PbrtSp
         node->input = {input(p, "tex", 1, is_float, use), number(p, "scale", 1), nullptr};
         return node;
     }
-    if (type == "directionmix") {
-        scene_.warn(p.place(), "texture \"directionmix\" is read as an even mix");
-        p.ignore({"dir"});
-        return mix_node(p, is_float, use, constant_node(Spectrum{0.5f}));
-    }
+    if (type == "directionmix") return direction_mix_node(texture, is_float, use);
     if (is_procedural(type)) {
         scene_.warn(p.place(), fmt::format("texture {} is not supported and read as 0.5", quote(type)));
         return constant_node(Spectrum{0.5f});

@@ -37,11 +37,12 @@ using PbrtNodeRef = std::shared_ptr<const PbrtNode>;
 
 /// A node of a texture graph.
 struct PbrtNode {
-    enum class Kind { constant, image, checkerboard, scale, mix, bilerp };
+    enum class Kind { constant, image, checkerboard, scale, mix, direction_mix, bilerp };
     Kind kind = Kind::constant;
     Spectrum value;                    // constant
-    std::array<PbrtNodeRef, 3> input;  // scale: two; mix: two and the amount; checkerboard: two
-    std::array<Spectrum, 4> corner;    // bilerp: v00, v01, v10, v11
+    std::array<PbrtNodeRef, 3> input;  // mix: two and the amount; others: two
+    Vec3 axis;                       // direction_mix: world space, unit; what faces it shows the first input
+    std::array<Spectrum, 4> corner;  // bilerp: v00, v01, v10, v11
     PbrtMapping mapping;
     std::shared_ptr<const PbrtPixels> pixels;
     Wrap wrap = Wrap::repeat;
@@ -54,6 +55,7 @@ struct PbrtBaked {
     Vec4 value;  // where there is no texture
     std::optional<TextureRef> texture;
     PbrtMapping mapping;     // where its coordinates come from something else than uv: of uv set 1
+    Vec3 axis;               // that surfaces may face; 0: it does not matter
     bool by_domain = false;  // made for one range of u and v alone
 };
 
@@ -93,6 +95,8 @@ class PbrtTextures {
     [[nodiscard]] PbrtNodeRef image_node(const PbrtTexture& texture, bool is_float);
     [[nodiscard]] PbrtNodeRef mix_node(const PbrtParameters& p, bool is_float, PbrtSpectrumUse use,
                                        PbrtNodeRef amount);
+    [[nodiscard]] PbrtNodeRef direction_mix_node(const PbrtTexture& texture, bool is_float,
+                                                 PbrtSpectrumUse use);
     [[nodiscard]] PbrtNodeRef checkerboard_node(const PbrtTexture& texture, bool is_float,
                                                 PbrtSpectrumUse use);
     [[nodiscard]] PbrtNodeRef bilerp_node(const PbrtTexture& texture, bool is_float, PbrtSpectrumUse use);
@@ -100,6 +104,9 @@ class PbrtTextures {
                                     bool is_float, PbrtSpectrumUse use);
     [[nodiscard]] ImageId add_image(ByteImage image, const PbrtPlace& place);
     struct Grid;
+    [[nodiscard]] Vec3 find_axis(const std::vector<PbrtNodeRef>& nodes, const PbrtPlace& place);
+    [[nodiscard]] ByteImage baked_image(const Grid& grid, const std::vector<PbrtNodeRef>& nodes,
+                                        const PbrtCombine& combine, bool srgb, bool facing) const;
     [[nodiscard]] Grid choose_grid(const std::vector<const PbrtNode*>& leaves,
                                    const std::array<Vec2, 2>& domain, const PbrtPlace& place);
 
@@ -113,15 +120,18 @@ class PbrtTextures {
     std::size_t baked_texels_ = 0;
 };
 
-/// Texture coordinates (s, 1 − t) of a mapping by position, for the vertices of a mesh; makes vertices their
-/// triangle's own where coordinates would wrap within one.
-void add_mapped_uvs(Mesh& mesh, const PbrtMapping& mapping, const Transform& world_from_object);
+/// What a mesh needs for textures of that mapping and axis; null: nothing. `smooth`: as in pbrt, it faces
+/// where its vertices' normals point.
+[[nodiscard]] std::shared_ptr<const TextureProjection> make_projection(const PbrtMapping& mapping, Vec3 axis,
+                                                                       bool smooth);
 
 [[nodiscard]] PbrtNodeRef constant_node(Spectrum value);
 [[nodiscard]] inline bool is_constant(const PbrtNodeRef& node) {
     return node->kind == PbrtNode::Kind::constant;
 }
-/// Its images and checkerboards.
+/// Its images, checkerboards and bilinear squares.
 void collect_leaves(const PbrtNodeRef& node, std::vector<const PbrtNode*>& leaves);
+/// Its mixes by direction.
+void collect_direction_mixes(const PbrtNodeRef& node, std::vector<const PbrtNode*>& mixes);
 
 }  // namespace relumine

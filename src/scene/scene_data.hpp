@@ -34,6 +34,8 @@ struct TextureRef {
     std::array<float, 6> uv_transform{1, 0, 0, 0, 1, 0};  // rows of 2 × 3: uv' = A·uv + b; v grows downwards
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;  // no interpolation
+    std::optional<ImageId>
+        turned_away;  // what surfaces show that do not face TextureProjection::axis; blended with `image`
 };
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
@@ -84,6 +86,17 @@ struct Triangle {
     std::array<std::uint32_t, 3> vertex;
 };
 
+/// What textures are read by beside a mesh's own coordinates: where in the world a point lies and how it
+/// faces, as pbrt's mappings have it. Per hit, since neither is linear over a triangle nor the same for all
+/// instances.
+struct TextureProjection {
+    enum class Kind : std::uint8_t { none, planar, spherical, cylindrical };
+    Kind kind = Kind::none;        // makes UV set 1
+    Transform texture_from_world;  // planar: x and y are the coordinates; else they go around z
+    Vec3 axis;                     // world space, unit; 0: no texture asks how a surface faces it
+    bool smooth = false;           // that is, the vertices' normal, instead of the triangle's
+};
+
 /// Triangles of one material in object space (in world space where the mesh has one instance: see
 /// finish_scene).
 struct Mesh {
@@ -96,6 +109,7 @@ struct Mesh {
     std::vector<std::array<float, 4>> colors;  // linear RGBA times base colour, per vertex; may be empty
     std::vector<Triangle> triangles;
     MaterialId material{};
+    std::shared_ptr<const TextureProjection> projection = nullptr;  // null: none of its textures needs one
 };
 
 struct Instance {

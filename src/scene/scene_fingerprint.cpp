@@ -31,9 +31,10 @@ void add_each(Fingerprint& print, Values... values) {
 void add(Fingerprint& print, const std::optional<TextureRef>& texture) {
     print.add(texture.has_value());
     if (!texture) return;
-    const auto& [image, uv_set, uv_transform, wrap_u, wrap_v, nearest] = *texture;
+    const auto& [image, uv_set, uv_transform, wrap_u, wrap_v, nearest, turned_away] = *texture;
     for (const float x : uv_transform) print.add(x);
-    add_each(print, image, uv_set, wrap_u, wrap_v, nearest);
+    add_each(print, image, uv_set, wrap_u, wrap_v, nearest, turned_away.has_value());
+    if (turned_away) print.add(*turned_away);
 }
 
 void add(Fingerprint& print, const Material& material) {
@@ -60,8 +61,16 @@ void add(Fingerprint& print, const Material& material) {
         add(print, *texture);
 }
 
+void add(Fingerprint& print, const TextureProjection& projection) {
+    const auto& [kind, texture_from_world, axis, smooth] = projection;
+    add(print, texture_from_world);
+    add(print, axis);
+    add_each(print, kind, smooth);
+}
+
 void add(Fingerprint& print, const Mesh& mesh) {
-    const auto& [name, positions, normals, tangents, facet_tangents, uvs, colors, triangles, material] = mesh;
+    const auto& [name, positions, normals, tangents, facet_tangents, uvs, colors, triangles, material,
+                 projection] = mesh;
     (void)name;
     print.add_all(positions);
     print.add_all(normals);
@@ -69,7 +78,8 @@ void add(Fingerprint& print, const Mesh& mesh) {
     for (const auto& coordinates : uvs) print.add_all(coordinates);
     print.add_all(colors);
     print.add_all(triangles);
-    add_each(print, facet_tangents, material);
+    add_each(print, facet_tangents, material, projection != nullptr);
+    if (projection) add(print, *projection);
 }
 
 void add(Fingerprint& print, const Instance& instance) {

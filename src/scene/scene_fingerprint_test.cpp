@@ -44,9 +44,12 @@ TEST(SceneFingerprint, NamesThePartThatDiffers) {
         {"geometry", [](SceneData& s) { s.meshes[0].normals.resize(3); }},
         {"geometry", [](SceneData& s) { s.meshes[0].triangles[0].vertex[0] = 1; }},
         {"geometry", [](SceneData& s) { s.meshes.emplace_back(); }},
+        {"geometry",
+         [](SceneData& s) { s.meshes[0].projection = std::make_shared<const TextureProjection>(); }},
         {"instances", [](SceneData& s) { s.instances[0].world_from_object.m[0][3] = 1e-9; }},
         {"materials", [](SceneData& s) { s.materials[0].emission.b = 1; }},
         {"materials", [](SceneData& s) { s.materials[0].base_color_texture->wrap_v = Wrap::clamp; }},
+        {"materials", [](SceneData& s) { s.materials[0].base_color_texture->turned_away = ImageId{0}; }},
         {"materials", [](SceneData& s) { s.materials[0].attenuation_distance = 3; }},
         {"textures", [](SceneData& s) { s.images[0].rgba8[3] = 254; }},
         {"lights", [](SceneData& s) { s.point_lights[0].intensity.r = 2; }},
@@ -60,6 +63,24 @@ TEST(SceneFingerprint, NamesThePartThatDiffers) {
         change.apply(changed);
         EXPECT_EQ(differences(small_scene(), changed), std::vector<std::string>{change.part});
     }
+}
+
+TEST(SceneFingerprint, KnowsHowTexturesAreProjected) {
+    const auto projected = [](const TextureProjection& projection) {
+        SceneData scene = small_scene();
+        scene.meshes[0].projection = std::make_shared<const TextureProjection>(projection);
+        return scene;
+    };
+    using Kind = TextureProjection::Kind;
+    const SceneData before = projected({Kind::planar, {}, {0, 0, 1}, false});
+    EXPECT_TRUE(differences(before, projected({Kind::planar, {}, {0, 0, 1}, false})).empty());
+    Transform moved;
+    moved.m[0][3] = 1;
+    for (const TextureProjection& other : {TextureProjection{Kind::spherical, {}, {0, 0, 1}, false},
+                                           {Kind::planar, moved, {0, 0, 1}, false},
+                                           {Kind::planar, {}, {0, 1, 0}, false},
+                                           {Kind::planar, {}, {0, 0, 1}, true}})
+        EXPECT_EQ(differences(before, projected(other)), std::vector<std::string>{"geometry"});
 }
 
 TEST(SceneFingerprint, WhereTheSceneCameFromDoesNotCount) {

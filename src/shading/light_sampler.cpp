@@ -19,8 +19,8 @@ constexpr float flat_margin = 1.0001f;
 double mean_of_channels(Spectrum s) { return (double{s.r} + s.g + s.b) / 3; }
 
 /// Mean emission of a triangle, over a fixed pattern where it is textured.
-double mean_emission(const SceneData& scene, const Mesh& mesh, std::uint32_t triangle) {
-    const Material& material = scene.materials[index(mesh.material)];
+double mean_emission(const SceneData& scene, const Material& material, std::uint32_t instance,
+                     std::uint32_t triangle) {
     if (!material.emission_texture) return mean_of_channels(material.emission);
     constexpr int side = 4;
     double sum = 0;
@@ -31,8 +31,9 @@ double mean_emission(const SceneData& scene, const Mesh& mesh, std::uint32_t tri
         Hit hit;
         hit.u = b.x;
         hit.v = b.y;
+        hit.instance = instance;
         hit.triangle = triangle;
-        sum += mean_of_channels(material_emission(scene, material, texture_coordinates(mesh, hit).uv));
+        sum += mean_of_channels(material_emission(scene, material, texture_coordinates(scene, hit).uv));
     }
     return sum / (side * side);
 }
@@ -119,7 +120,7 @@ void LightSampler::add_emissive_instance(std::uint32_t i, const LightSelection& 
                               rounding_offset({a, b, c}), i, t, material.emission, material.double_sided,
                               material.emission_texture || material.alpha_mode != AlphaMode::opaque});
         local_.push_back({Kind::triangle, static_cast<std::uint32_t>(triangles_.size() - 1)});
-        powers.push_back(double{pi} * area * mean_emission(scene_, mesh, t)
+        powers.push_back(double{pi} * area * mean_emission(scene_, material, i, t)
                          * (material.double_sided ? 2 : 1));
     }
 }
@@ -182,7 +183,7 @@ Spectrum LightSampler::emitted(const EmissiveTriangle& light, const Hit& hit) co
     if (!light.varies) return light.radiance;
     const Mesh& mesh = scene_.meshes[index(scene_.instances[light.instance].mesh)];
     const Material& material = scene_.materials[index(mesh.material)];
-    const TextureCoordinates at = texture_coordinates(mesh, hit);
+    const TextureCoordinates at = texture_coordinates(scene_, hit);
     return material_emission(scene_, material, at.uv) * opacity(scene_, material, at);
 }
 

@@ -78,10 +78,7 @@ PaneShares pane_shares(const SceneData& scene, const Hit& hit, const SurfacePoin
                        float cosine) {
     const Material& m = *p.material;
     const float there =
-        m.alpha_mode == AlphaMode::opaque
-            ? 1
-            : opacity(scene, m,
-                      texture_coordinates(scene.meshes[index(scene.instances[hit.instance].mesh)], hit));
+        m.alpha_mode == AlphaMode::opaque ? 1 : opacity(scene, m, texture_coordinates(scene, hit));
     const float r = sheet_reflectance(std::min(cosine, 1.0f), m.ior), glass = there * glass_share(f);
     return {Spectrum{1 - there} + f.base_color * (glass * (1 - r)), glass * r, there - glass};
 }
@@ -208,7 +205,7 @@ UniformBsdfs::UniformBsdfs(const SceneData& scene, Masking masking) : first_(sce
     }
 }
 
-Spectrum material_emission(const SceneData& scene, const Material& material, const std::array<Vec2, 2>& uv) {
+Spectrum material_emission(const SceneData& scene, const Material& material, const TextureUv& uv) {
     if (!material.emission_texture || is_black(material.emission)) return material.emission;
     return material.emission * rgb(sample_texture(scene, *material.emission_texture, uv, Encoding::srgb));
 }

@@ -58,7 +58,7 @@ class UniformBsdfs {
 
 /// As above, at texture coordinates, without regard to sides.
 [[nodiscard]] Spectrum material_emission(const SceneData& scene, const Material& material,
-                                         const std::array<Vec2, 2>& uv);
+                                         const TextureUv& uv);
 
 /// Opacity in [0, 1]: 0 or 1 for alpha masks.
 [[nodiscard]] float opacity(const SceneData& scene, const Material& material, const TextureCoordinates& at);

@@ -19,13 +19,6 @@ Vec3 barycentric(const std::array<Vec3, 3>& corners, const Hit& hit) {
 
 Vec3 xyz(Vec4 v) { return {v.x, v.y, v.z}; }
 
-std::array<Vec2, 2> interpolate_uv(const Mesh& mesh, const Triangle& triangle, const Hit& hit) {
-    std::array<Vec2, 2> uv{};
-    for (std::size_t set = 0; set < uv.size(); ++set)
-        if (!mesh.uvs[set].empty()) uv[set] = interpolate(mesh.uvs[set], triangle, hit);
-    return uv;
-}
-
 /// Object-space normals and tangents to world space (up to length). Copies nothing where the mesh is in world
 /// space already.
 class NormalMapper {
@@ -47,6 +40,51 @@ class NormalMapper {
     const Instance& instance_;
 };
 
+/// Of a point of the projection's space; t grows upwards.
+Vec2 projected_uv(const TextureProjection& projection, Vec3 world) {
+    const Vec3 p = projection.texture_from_world.point(world);
+    const float around = std::atan2(p.y, p.x) / (2 * pi);
+    switch (projection.kind) {
+        case TextureProjection::Kind::planar:
+            return {p.x, p.y};
+        case TextureProjection::Kind::cylindrical:
+            return {0.5f + around, p.z};
+        case TextureProjection::Kind::spherical: {
+            const float off_axis = std::sqrt(sqr(p.x) + sqr(p.y));
+            return {std::atan2(off_axis, p.z) / pi, around < 0 ? around + 1 : around};
+        }
+        case TextureProjection::Kind::none:
+            break;
+    }
+    return {};
+}
+
+/// Not inlined: most meshes have none.
+[[gnu::noinline]] void project(const SceneData& scene, const Mesh& mesh, const Hit& hit, TextureUv& uv) {
+    const TextureProjection& projection = *mesh.projection;
+    const std::array<Vec3, 3> corners = world_triangle(scene, hit.instance, hit.triangle);
+    if (projection.kind != TextureProjection::Kind::none) {
+        const Vec2 st = projected_uv(projection, barycentric(corners, hit));
+        uv.sets[1] = {st.x, 1 - st.y};
+    }
+    if (length_squared(projection.axis) == 0) return;
+    Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    if (projection.smooth && !mesh.normals.empty())
+        normal = NormalMapper(scene.instances[hit.instance])
+                     .normal(interpolate(mesh.normals, mesh.triangles[hit.triangle], hit));
+    if (length_squared(normal) > 0)
+        uv.facing = std::min(std::abs(dot(normalize(normal), projection.axis)), 1.0f);
+}
+
+TextureUv texture_uv(const SceneData& scene, const Mesh& mesh, const Hit& hit) {
+    TextureUv uv;
+    for (std::size_t set = 0; set < uv.sets.size(); ++set)
+        if (!mesh.uvs[set].empty())
+            uv.sets[set] = interpolate(mesh.uvs[set], mesh.triangles[hit.triangle], hit);
+    if (mesh.projection) project(scene, mesh, hit, uv);
+    return uv;
+}
+
 /// The vertices' tangents at the hit, in world space, of any length; w is the handedness.
 Vec4 world_tangent(const Mesh& mesh, const Triangle& triangle, const Hit& hit, const NormalMapper& map) {
     const auto& [a, b, c] = triangle.vertex;
@@ -66,7 +104,7 @@ Vec3 facet_tangent(const Mesh& mesh, const Triangle& triangle) {
 }
 
 /// The direction of increased roughness in tangent space, unit [KHR_materials_anisotropy].
-Vec2 rougher_direction(const SceneData& scene, const Material& material, const std::array<Vec2, 2>& uv) {
+Vec2 rougher_direction(const SceneData& scene, const Material& material, const TextureUv& uv) {
     const float c = std::cos(material.anisotropy_rotation), s = std::sin(material.anisotropy_rotation);
     if (!material.anisotropy_texture) return {c, s};
     const Vec4 texel = sample_texture(scene, *material.anisotropy_texture, uv, Encoding::linear);
@@ -90,7 +128,7 @@ Vec2 rougher_direction(const SceneData& scene, const Material& material, const s
         length_squared(at.normal) > 0 ? at.normal : cross(b - a, c - a) * map.winding();  // any length
     const Frame frame = frame_along(normalize(normal), along / std::max(max_abs(along), 1e-30f));
     const Vec2 rougher =
-        rougher_direction(scene, scene.materials[index(mesh.material)], interpolate_uv(mesh, triangle, hit));
+        rougher_direction(scene, scene.materials[index(mesh.material)], texture_uv(scene, mesh, hit));
     return frame.s * rougher.x + frame.t * (rougher.y * tangent.w);
 }
 
@@ -155,9 +193,10 @@ float rounding_offset(const std::array<Vec3, 3>& corners) {
     return rounding_units * std::max({max_abs(corners[0]), max_abs(corners[1]), max_abs(corners[2])});
 }
 
-TextureCoordinates texture_coordinates(const Mesh& mesh, const Hit& hit) {
+TextureCoordinates texture_coordinates(const SceneData& scene, const Hit& hit) {
+    const Mesh& mesh = scene.meshes[index(scene.instances[hit.instance].mesh)];
     const Triangle& triangle = mesh.triangles[hit.triangle];
-    TextureCoordinates coordinates{interpolate_uv(mesh, triangle, hit)};
+    TextureCoordinates coordinates{texture_uv(scene, mesh, hit)};
     if (!mesh.colors.empty()) {
         const auto& [a, b, c] = triangle.vertex;
         coordinates.vertex_alpha =
@@ -179,7 +218,7 @@ SurfacePoint surface_point(const SceneData& scene, const Hit& hit, WorldDir w_ou
     p.instance = hit.instance;
     p.triangle = hit.triangle;
     p.offset = rounding_offset(corners);
-    p.uv = interpolate_uv(mesh, triangle, hit);
+    p.uv = texture_uv(scene, mesh, hit);
     p.has_vertex_color = !mesh.colors.empty();
     if (p.has_vertex_color) {
         const auto color = [&](std::size_t i) {

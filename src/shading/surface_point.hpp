@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/frame.hpp"
+#include "shading/texture.hpp"
 #include "trace/tracer.hpp"
 
 namespace relumine {
@@ -13,7 +14,7 @@ struct SurfacePoint {
     // Shading frame: n on the viewer's side and turned so that the viewer is above it, s where the lobes of
     // anisotropic materials are rougher.
     Frame frame;
-    std::array<Vec2, 2> uv;  // texture coordinates, 0 where the mesh has none
+    TextureUv uv;
     Spectrum vertex_color{1};
     bool has_vertex_color = false;
     const Material* material = nullptr;  // never null
@@ -27,10 +28,10 @@ struct SurfacePoint {
 
 /// Texture coordinates and vertex alpha alone, for opacity tests during traversal.
 struct TextureCoordinates {
-    std::array<Vec2, 2> uv;
+    TextureUv uv;
     float vertex_alpha = 1;
 };
-[[nodiscard]] TextureCoordinates texture_coordinates(const Mesh& mesh, const Hit& hit);
+[[nodiscard]] TextureCoordinates texture_coordinates(const SceneData& scene, const Hit& hit);
 
 /// The corners of a triangle in world space, in the mesh's order.
 [[nodiscard]] std::array<Vec3, 3> world_triangle(const SceneData& scene, std::uint32_t instance,

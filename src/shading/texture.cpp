@@ -50,15 +50,11 @@ float tame(float coordinate) {
     return std::isfinite(coordinate) ? std::clamp(coordinate, -1e4f, 1e4f) : 0.0f;
 }
 
-}  // namespace
-
-Vec4 sample_texture(const SceneData& scene, const TextureRef& texture, const std::array<Vec2, 2>& uv,
-                    Encoding encoding) {
-    const ByteImage& image = scene.images[index(texture.image)];
-    const Vec2 p = uv[static_cast<std::size_t>(texture.uv_set)];
+/// `uv`: before the texture's own transform.
+Vec4 sample_image(const ByteImage& image, const TextureRef& texture, Vec2 uv, Encoding encoding) {
     const auto& m = texture.uv_transform;
-    const float x = tame(m[0] * p.x + m[1] * p.y + m[2]) * static_cast<float>(image.width);
-    const float y = tame(m[3] * p.x + m[4] * p.y + m[5]) * static_cast<float>(image.height);
+    const float x = tame(m[0] * uv.x + m[1] * uv.y + m[2]) * static_cast<float>(image.width);
+    const float y = tame(m[3] * uv.x + m[4] * uv.y + m[5]) * static_cast<float>(image.height);
     const auto at = [&](int i, int j) {
         return texel(image, wrap_texel(i, image.width, texture.wrap_u),
                      wrap_texel(j, image.height, texture.wrap_v), encoding);
@@ -69,6 +65,17 @@ Vec4 sample_texture(const SceneData& scene, const TextureRef& texture, const std
     const float s = x - 0.5f - left, t = y - 0.5f - top;
     return mix_texels(mix_texels(at(i, j), at(i + 1, j), s), mix_texels(at(i, j + 1), at(i + 1, j + 1), s),
                       t);
+}
+
+}  // namespace
+
+Vec4 sample_texture(const SceneData& scene, const TextureRef& texture, const TextureUv& uv,
+                    Encoding encoding) {
+    const Vec2 at = uv.sets[static_cast<std::size_t>(texture.uv_set)];
+    const Vec4 value = sample_image(scene.images[index(texture.image)], texture, at, encoding);
+    if (!texture.turned_away) return value;
+    return mix_texels(sample_image(scene.images[index(*texture.turned_away)], texture, at, encoding), value,
+                      uv.facing);
 }
 
 }  // namespace relumine
