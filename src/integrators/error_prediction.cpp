@@ -61,24 +61,19 @@ float deviation_left(const PixelDoubt& doubt) {
 
 std::vector<float> noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,
                                    NoiseEstimate PixelDoubt::*kind, int threads) {
-    FilterImage image{guides.width, guides.height, guides.guides, {}, {}};
-    image.values.reserve(doubts.size());
+    FilterParts around(2);  // noise, and its squares
     for (const PixelDoubt& d : doubts) {
         const float scale = d.albedo > least_albedo ? 1 / sqr(d.albedo) : 0;
         const NoiseEstimate& noise = d.*kind;
-        image.values.push_back({noise.independent * scale, noise.halves * scale, noise.rays});
+        around[0].push_back({noise.independent * scale, noise.halves * scale, noise.rays});
+        around[1].emplace_back(sqr(noise.independent * scale));
     }
-    std::vector<Spectrum> means = image.values;
-    for (Spectrum& v : image.values) v = Spectrum{sqr(v.r)};
-    filter_along_surfaces(image, noise_levels, threads);
-    std::swap(image.values, means);
-    filter_along_surfaces(image, noise_levels, threads);
-    std::swap(image.values, means);
+    filter_along_surfaces(guides, around, noise_levels, threads);
     std::vector<float> variances;
     variances.reserve(doubts.size());
     for (std::size_t i = 0; i < doubts.size(); ++i) {
-        const Spectrum& v = means[i];
-        variances.push_back(variance_of_sum({v.r, v.g, v.b, sources_of(v.r, image.values[i].r)}));
+        const Spectrum& mean = around[0][i];
+        variances.push_back(variance_of_sum({mean.r, mean.g, mean.b, sources_of(mean.r, around[1][i].r)}));
     }
     return variances;
 }

@@ -3,6 +3,7 @@
 #include "integrators/residual_filter.hpp"
 
 #include <array>
+#include <span>
 #include <utility>
 
 #include "base/executor.hpp"
@@ -29,48 +30,55 @@ Spectrum ratio(Spectrum a, Spectrum b) {
     return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }
 
-/// The mean around a pixel and, over the same weights' squares, the variance of such a mean.
-struct Filtered {
-    Spectrum mean, variance;
+/// The pixels around one that show its surface, and how much each counts.
+struct Surroundings {
+    static constexpr std::size_t most = 25;
+
+    std::array<std::size_t, most> pixels;
+    std::array<float, most> alike;
+    std::size_t count = 0;
 };
 
-Filtered filtered(const FilterImage& image, int x, int y, int step) {
+Surroundings surroundings(const FilterImage& image, int x, int y, int step) {
     const auto at = [&](int i, int j) {
         return static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width)
                + static_cast<std::size_t>(i);
     };
     const FilterGuide& middle = image.guides[at(x, y)];
-    if (middle.footprint <= 0) return {};
-    Spectrum sum, squares, weights;
+    Surroundings around;
+    if (middle.footprint <= 0) return around;
     for (int dy = -2; dy <= 2; ++dy)
         for (int dx = -2; dx <= 2; ++dx) {
             const int i = x + dx * step, j = y + dy * step;
             if (i < 0 || i >= image.width || j < 0 || j >= image.height) continue;
             const FilterGuide& guide = image.guides[at(i, j)];
             if (guide.footprint <= 0) continue;
-            const float alike = spline[static_cast<std::size_t>(std::abs(dx))]
-                                * spline[static_cast<std::size_t>(std::abs(dy))]
-                                * likeness(middle, guide, static_cast<float>(step));
-            const Spectrum weight = image.weights.empty() ? Spectrum{alike} : image.weights[at(i, j)] * alike;
-            sum += image.values[at(i, j)] * weight;
-            squares += image.values[at(i, j)] * (weight * weight);
-            weights += weight;
+            const float alike = likeness(middle, guide, static_cast<float>(step));
+            if (alike == 0) continue;
+            around.pixels[around.count] = at(i, j);
+            around.alike[around.count++] = spline[static_cast<std::size_t>(std::abs(dx))]
+                                           * spline[static_cast<std::size_t>(std::abs(dy))] * alike;
         }
-    return {ratio(sum, weights), ratio(squares, weights * weights)};
+    return around;
 }
 
-/// Replaces all values by use(level, filtered), level by level.
-template <typename Use>
-void filter(FilterImage& image, int first_level, int levels, int threads, const Use& use) {
-    std::vector<Spectrum> next(image.values.size());
-    for (int level = first_level; level < levels; ++level) {
-        parallel_for(threads, static_cast<std::size_t>(image.height), [&](std::size_t row) {
-            for (int x = 0; x < image.width; ++x)
-                next[row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)] =
-                    use(level, filtered(image, x, static_cast<int>(row), 1 << level));
-        });
-        std::swap(next, image.values);
+/// The mean around a pixel and, over the same weights' squares, the variance of such a mean.
+struct Filtered {
+    Spectrum mean, variance;
+};
+
+/// `weights`: of values in means; empty: all the same.
+Filtered filtered(const Surroundings& around, std::span<const Spectrum> values,
+                  std::span<const Spectrum> weights) {
+    Spectrum sum, squares, all;
+    for (std::size_t k = 0; k < around.count; ++k) {
+        const std::size_t i = around.pixels[k];
+        const Spectrum weight = weights.empty() ? Spectrum{around.alike[k]} : weights[i] * around.alike[k];
+        sum += values[i] * weight;
+        squares += values[i] * (weight * weight);
+        all += weight;
     }
+    return {ratio(sum, all), ratio(squares, all * all)};
 }
 
 // By level, of white noise on an open plane under B₃: Σw² of all levels together over that of those before,
@@ -90,118 +98,143 @@ Spectrum filtered_variance(int level, const Filtered& f) {
             channel(f.mean.b, f.variance.b)};
 }
 
-void filter_level(FilterImage& image, int level, int threads) {
-    filter(image, level, level + 1, threads, [](int, const Filtered& f) { return f.mean; });
+/// Values that are filtered beside others: how alike pixels are is the same for all.
+struct Layer {
+    enum class Kind : std::uint8_t { values, variances };
+
+    std::vector<Spectrum> values;
+    const Layer* weights = nullptr;  // of `values` in means
+    Kind kind = Kind::values;
+    std::vector<Spectrum> before{};  // the values before the last level
+};
+
+void filter_level(const FilterImage& guides, std::span<Layer* const> layers, int level, int threads) {
+    for (Layer* layer : layers) layer->before.resize(guides.guides.size());
+    parallel_for(threads, static_cast<std::size_t>(guides.height), [&](std::size_t row) {
+        for (int x = 0; x < guides.width; ++x) {
+            const Surroundings around = surroundings(guides, x, static_cast<int>(row), 1 << level);
+            const std::size_t i = row * static_cast<std::size_t>(guides.width) + static_cast<std::size_t>(x);
+            for (Layer* layer : layers) {
+                const Filtered f =
+                    filtered(around, layer->values,
+                             layer->weights ? std::span(layer->weights->values) : std::span<Spectrum>{});
+                layer->before[i] =
+                    layer->kind == Layer::Kind::variances ? filtered_variance(level, f) : f.mean;
+            }
+        }
+    });
+    for (Layer* layer : layers) std::swap(layer->values, layer->before);
+}
+
+/// A picture's own values.
+void filter_picture(FilterImage& image, Layer::Kind kind, int levels, int threads) {
+    const Layer weights{std::move(image.weights)};
+    Layer layer{std::move(image.values), weights.values.empty() ? nullptr : &weights, kind};
+    for (int level = 0; level < levels; ++level) filter_level(image, std::array{&layer}, level, threads);
+    image.values = std::move(layer.values);
+    image.weights = weights.values;
 }
 
 }  // namespace
 
 void filter_along_surfaces(FilterImage& image, int levels, int threads) {
-    for (int level = 0; level < levels; ++level) filter_level(image, level, threads);
+    filter_picture(image, Layer::Kind::values, levels, threads);
 }
 
 void filter_variances(FilterImage& variances, int levels, int threads) {
-    filter(variances, 0, levels, threads, filtered_variance);
+    filter_picture(variances, Layer::Kind::variances, levels, threads);
+}
+
+void filter_along_surfaces(const FilterImage& guides, FilterParts& parts, int levels, int threads) {
+    std::vector<Layer> layers(parts.size());
+    std::vector<Layer*> all;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        layers[k].values = std::move(parts[k]);
+        all.push_back(&layers[k]);
+    }
+    for (int level = 0; level < levels; ++level) filter_level(guides, all, level, threads);
+    for (std::size_t k = 0; k < parts.size(); ++k) parts[k] = std::move(layers[k].values);
 }
 
 namespace {
 
-/// Values, and weights if they have any, of an image whose guides several share.
-struct Layer {
-    std::vector<Spectrum> values, weights;
-};
-
-/// Filters one layer of an image after the other, so that guides are held once.
-class Layers {
+/// What smooth_noise filters, level by level.
+class Smoothing {
   public:
-    Layers(FilterImage guides, int threads) : image_(std::move(guides)), threads_(threads) {}
-
-    [[nodiscard]] std::vector<Spectrum> take_weights() { return std::exchange(image_.weights, {}); }
-
-    void filter_values(Layer& layer, int level) {
-        on(layer, [&] { filter_level(image_, level, threads_); });
-    }
-    void filter_variances(Layer& layer, int level) {
-        on(layer, [&] { filter(image_, level, level + 1, threads_, filtered_variance); });
-    }
-    /// The next level's: those of the values that its own are means of.
-    void filter_weights(Layer& layer, int level) {
-        if (layer.weights.empty()) return;
-        Layer weights{std::move(layer.weights), {}};
-        filter_values(weights, level);
-        layer.weights = std::move(weights.values);
-    }
-    /// The luminance of the parts together, squared, and averaged over a pixel's surroundings.
-    [[nodiscard]] std::vector<Spectrum> energy(const FilterParts& parts) {
-        Layer layer{std::vector<Spectrum>(image_.guides.size()), {}};
-        for (std::size_t i = 0; i < layer.values.size(); ++i) {
-            Spectrum sum;
-            for (const auto& part : parts) sum += part[i];
-            layer.values[i] = Spectrum{sqr(luminance(sum))};
+    Smoothing(FilterImage guides, FilterParts& parts, const std::vector<float>& variances, int threads)
+        : guides_(std::move(guides)), threads_(threads), parts_(parts.size()) {
+        weights_.values = std::exchange(guides_.weights, {});
+        const bool weighed = !weights_.values.empty();
+        for (const Spectrum& w : weights_.values) noise_weights_.values.emplace_back(luminance(w));
+        for (const float v : variances) noise_.values.emplace_back(v);
+        noise_.kind = Layer::Kind::variances;
+        noise_.weights = weighed ? &noise_weights_ : nullptr;
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            parts_[k] = {std::move(parts[k]), weighed ? &weights_ : nullptr, Layer::Kind::values};
+            all_.push_back(&parts_[k]);
         }
-        on(layer, [&] { filter_along_surfaces(image_, noise_levels, threads_); });
-        return std::move(layer.values);
+        all_.push_back(&noise_);
+        if (weighed) all_.insert(all_.end(), {&weights_, &noise_weights_});
+    }
+
+    /// Smooths everything; what the parts lose by it are the details.
+    void filter(int level) {
+        filter_level(guides_, all_, level, threads_);
+        for (Layer& part : parts_)
+            for (std::size_t i = 0; i < part.values.size(); ++i)
+                part.before[i] = part.before[i] - part.values[i];
+    }
+
+    [[nodiscard]] std::size_t parts() const { return parts_.size(); }
+    [[nodiscard]] std::vector<Spectrum>& values(std::size_t part) { return parts_[part].values; }
+    [[nodiscard]] const std::vector<Spectrum>& details(std::size_t part) const { return parts_[part].before; }
+    [[nodiscard]] float noise(std::size_t i) const { return noise_.values[i].r; }
+    [[nodiscard]] float noise_before(std::size_t i) const { return noise_.before[i].r; }
+
+    /// The luminance of the details together, squared, and averaged over a pixel's surroundings.
+    [[nodiscard]] std::vector<Spectrum> energy() const {
+        FilterParts squares(1);
+        for (std::size_t i = 0; i < guides_.guides.size(); ++i) {
+            Spectrum sum;
+            for (const Layer& part : parts_) sum += part.before[i];
+            squares[0].emplace_back(sqr(luminance(sum)));
+        }
+        filter_along_surfaces(guides_, squares, noise_levels, threads_);
+        return std::move(squares[0]);
     }
 
   private:
-    template <typename Run>
-    void on(Layer& layer, const Run& run) {
-        const auto exchange = [&] {
-            std::swap(image_.values, layer.values);
-            std::swap(image_.weights, layer.weights);
-        };
-        exchange();
-        run();
-        exchange();
-    }
-
-    FilterImage image_;  // with neither values nor weights between calls
+    FilterImage guides_;  // with neither values nor weights
     int threads_;
+    std::vector<Layer> parts_;
+    Layer weights_, noise_, noise_weights_;
+    std::vector<Layer*> all_;
 };
-
-/// Variances of luminance, weighed by that of the weights.
-Layer noise_layer(const std::vector<float>& variances, const std::vector<Spectrum>& weights) {
-    Layer noise;
-    noise.values.reserve(variances.size());
-    noise.weights.reserve(weights.size());
-    for (const float v : variances) noise.values.emplace_back(v);
-    for (const Spectrum& w : weights) noise.weights.emplace_back(luminance(w));
-    return noise;
-}
 
 }  // namespace
 
 std::vector<float> smooth_noise(FilterImage guides, FilterParts& parts, const std::vector<float>& variances,
                                 int levels, int threads) {
     const std::size_t count = guides.guides.size();
-    Layers layers(std::move(guides), threads);
-    Layer coarse{{}, layers.take_weights()}, noise = noise_layer(variances, coarse.weights);
-    FilterParts kept(parts.size(), std::vector<Spectrum>(count));
+    Smoothing smoothing(std::move(guides), parts, variances, threads);
+    FilterParts kept(smoothing.parts(), std::vector<Spectrum>(count));
     std::vector<float> error(count);
     for (int level = 0; level < levels; ++level) {
-        FilterParts details(parts.size());
-        for (std::size_t k = 0; k < parts.size(); ++k) {
-            coarse.values = parts[k];
-            layers.filter_values(coarse, level);
-            details[k] = std::move(parts[k]);
-            for (std::size_t i = 0; i < count; ++i) details[k][i] = details[k][i] - coarse.values[i];
-            parts[k] = std::move(coarse.values);
-        }
-        const std::vector<Spectrum> seen = layers.energy(details), before = noise.values;
-        layers.filter_variances(noise, level);
-        layers.filter_weights(coarse, level);
-        layers.filter_weights(noise, level);
+        smoothing.filter(level);
+        const std::vector<Spectrum> seen = smoothing.energy();
         for (std::size_t i = 0; i < count; ++i) {
-            const float expected = at_level(detail_share, level) * before[i].r + noise.values[i].r;
+            const float expected =
+                at_level(detail_share, level) * smoothing.noise_before(i) + smoothing.noise(i);
             const float share = seen[i].r > expected ? 1 - expected / seen[i].r : 0;
-            for (std::size_t k = 0; k < parts.size(); ++k) kept[k][i] += details[k][i] * share;
+            for (std::size_t k = 0; k < kept.size(); ++k) kept[k][i] += smoothing.details(k)[i] * share;
             error[i] += expected * share;
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t k = 0; k < parts.size(); ++k) parts[k][i] += kept[k][i];
-        error[i] += noise.values[i].r;
+        for (std::size_t k = 0; k < kept.size(); ++k) kept[k][i] = smoothing.values(k)[i] + kept[k][i];
+        error[i] += smoothing.noise(i);
     }
+    parts = std::move(kept);
     return error;
 }
 

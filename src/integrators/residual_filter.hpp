@@ -39,6 +39,9 @@ void filter_variances(FilterImage& variances, int levels, int threads);
 /// The parts of noisy values that are to be smoothed alike.
 using FilterParts = std::vector<std::vector<Spectrum>>;
 
+/// filter_along_surfaces of several layers of values, for the guides of one picture.
+void filter_along_surfaces(const FilterImage& guides, FilterParts& parts, int levels, int threads);
+
 /// Smooths what may be noise and keeps what is more: level by level, a pixel's difference to its surroundings
 /// stays by the share of it, over the pixels around, that noise does not explain (Wiener's filter on the
 /// wavelet's details). `guides` may have weights: Σ weight · value is then what a mean keeps. `variances`: by
@@ -47,10 +50,10 @@ using FilterParts = std::vector<std::vector<Spectrum>>;
 [[nodiscard]] std::vector<float> smooth_noise(FilterImage guides, FilterParts& parts,
                                               const std::vector<float>& variances, int levels, int threads);
 
-/// What smooth_noise holds for each pixel beside its arguments, of so many parts: coarse values and weights,
-/// noise and its weights, their energy, what is filtered next and what was before; details, and those kept.
+/// What smooth_noise holds for each pixel beside its arguments, of so many parts: these, their details, and
+/// what of them is kept; weights, noise and its weights, and the energy of details, before a level and after.
 constexpr std::size_t smoothing_bytes(std::size_t parts) {
-    return (7 + 2 * parts) * sizeof(Spectrum) + sizeof(float);
+    return (8 + 3 * parts) * sizeof(Spectrum) + sizeof(float);
 }
 
 /// Levels of the filter over which squares of noise are averaged: fewer values scatter too much themselves.
