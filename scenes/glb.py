@@ -67,12 +67,16 @@ class Glb:
                  ior=None,
                  transmission=None,
                  thickness=None,
-                 double_sided=False):
-        """Metallic-roughness; `emission` is radiance, one-sided unless `double_sided`."""
-        pbr = {"baseColorFactor": [*base, 1.0], "metallicFactor": metallic, "roughnessFactor": roughness}
+                 double_sided=False,
+                 alpha_mode=None,
+                 alpha=1.0):
+        """Metallic-roughness; `emission` is radiance, one-sided unless `double_sided`; `alpha_mode` MASK or BLEND."""
+        pbr = {"baseColorFactor": [*base, alpha], "metallicFactor": metallic, "roughnessFactor": roughness}
         if texture is not None:
             pbr["baseColorTexture"] = {"index": texture}
         material = {"name": name, "pbrMetallicRoughness": pbr, "doubleSided": double_sided}
+        if alpha_mode is not None:
+            material["alphaMode"] = alpha_mode
         extensions = {}
         if emission is not None:
             strength = max(emission)
@@ -104,9 +108,12 @@ class Glb:
 
     def mesh(self, name, parts, parent=None, **transform):
         """A node with one primitive for each (Mesh, material) of `parts`; `transform` as in `node`."""
+        return self.node(name, parent, mesh=self.model(name, parts), **transform)
+
+    def model(self, name, parts):
+        """What several nodes may show: `node(…, mesh=model)`."""
         primitives = [self._primitive(shape, material) for shape, material in parts]
-        index = self._append("meshes", {"name": name, "primitives": primitives})
-        return self.node(name, parent, mesh=index, **transform)
+        return self._append("meshes", {"name": name, "primitives": primitives})
 
     def camera(self, name, eye, target, yfov, aspect, parent=None):
         """A perspective camera, upright; `yfov` in radians, `aspect` = width / height."""
@@ -122,20 +129,49 @@ class Glb:
             })
         return self.node(name, parent, camera=index, translation=eye, rotation=looking(eye, target))
 
+    def orthographic_camera(self, name, eye, target, half_side, parent=None):
+        """Parallel rays through a square; upright."""
+        index = self._append(
+            "cameras", {
+                "name": name,
+                "type": "orthographic",
+                "orthographic": {
+                    "xmag": half_side,
+                    "ymag": half_side,
+                    "znear": 0.01,
+                    "zfar": 1000.0
+                },
+            })
+        return self.node(name, parent, camera=index, translation=eye, rotation=looking(eye, target))
+
     def point_light(self, name, position, intensity, parent=None):
         """`intensity` in W/sr per channel (Relumine takes KHR units as radiometric)."""
+        return self._light(name, {"type": "point"}, intensity, parent, translation=position)
+
+    def spot_light(self, name, position, target, intensity, half_angle, parent=None):
+        """As `point_light`, within `half_angle` (radians) of the direction to `target`, with a hard edge."""
+        spot = {"innerConeAngle": half_angle * 0.999, "outerConeAngle": half_angle}
+        return self._light(name, {"type": "spot", "spot": spot}, intensity, parent, translation=position,
+                           rotation=looking(position, target))
+
+    def directional_light(self, name, towards, irradiance, parent=None):
+        """Light that travels `towards`; `irradiance` on a plane across it."""
+        return self._light(name, {"type": "directional"}, irradiance, parent,
+                           rotation=looking((0, 0, 0), towards))
+
+    def _light(self, name, kind, intensity, parent, **place):
         self._use("KHR_lights_punctual")
         lights = self.document.setdefault("extensions", {}).setdefault("KHR_lights_punctual",
                                                                        {"lights": []})["lights"]
         strength = max(intensity)
         lights.append({
             "name": name,
-            "type": "point",
+            **kind,
             "color": [value / strength for value in intensity],
             "intensity": strength
         })
         extension = {"KHR_lights_punctual": {"light": len(lights) - 1}}
-        return self.node(name, parent, translation=position, extensions=extension)
+        return self.node(name, parent, extensions=extension, **place)
 
     def node(self, name, parent=None, translation=None, rotation=None, scale=None, **content):
         """Adds a node under `parent` (None: the scene), returns its index; `rotation` is a quaternion x y z w."""
@@ -226,11 +262,13 @@ def looking(eye, target):
 
 
 def png(width, height, pixels, palette):
-    """A palette PNG; `pixels` index `palette`, (r, g, b) in 0..255, sRGB; row by row from the top."""
+    """A palette PNG; `pixels` index `palette`, (r, g, b) or (r, g, b, a) in 0..255, sRGB; row by row from the top."""
     rows = b"".join(b"\0" + bytes(pixels[y * width:(y + 1) * width]) for y in range(height))
     header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
-    colours = bytes(value for colour in palette for value in colour)
-    chunks = ((b"IHDR", header), (b"PLTE", colours), (b"IDAT", zlib.compress(rows, 9)), (b"IEND", b""))
+    colours = bytes(value for colour in palette for value in colour[:3])
+    alphas = bytes(colour[3] for colour in palette if len(colour) > 3)
+    chunks = ((b"IHDR", header), (b"PLTE", colours), *([(b"tRNS", alphas)] if alphas else []),
+              (b"IDAT", zlib.compress(rows, 9)), (b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(
         struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
         for kind, data in chunks)
