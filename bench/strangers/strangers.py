@@ -61,7 +61,7 @@ def options_of(text: str) -> Options:
 def view_of(world: World, sky: pathlib.Path, args: argparse.Namespace) -> View:
     file = args.out / f"{world.name}.glb"
     world.write(file)
-    extra: Options = {"max-depth": world.depth, "pixel-sampling": "jitter", "radiance": "auto"}
+    extra: Options = {"pixel-sampling": "jitter", "radiance": "auto"}
     return View(file, sky if world.sky else None, world.env_rotate, args.size, args.size, extra)
 
 

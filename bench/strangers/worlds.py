@@ -25,7 +25,6 @@ class World:
     write: Callable[[pathlib.Path], None]
     sky: bool = False  # lit by the smooth sky
     env_rotate: float = 0.0  # degrees
-    depth: int = 7  # scattering vertices
     noisy: int = 1  # how many times as many samples the reference gets
 
 
@@ -247,7 +246,7 @@ WORLDS = [
     World("gloss", "a room all of glossy metal", write_gloss, noisy=2),
     World("instances", "nine copies of one mesh, scaled and mirrored, under a sky", write_instances, sky=True),
     World("orthographic", "parallel rays; a lamp, a sun and a spot without area", write_orthographic, noisy=2),
-    World("leaves", "120 leaves cut out by a mask, and a veil", write_leaves, sky=True, env_rotate=200, depth=12),
+    World("leaves", "120 leaves cut out by a mask, and a veil", write_leaves, sky=True, env_rotate=200),
     World("emissive", "a room lit by a knot of 1,536 triangles", write_emissive),
     World("wall", "light that comes from another room, past a wall of 1 cm", write_wall),
 ]
