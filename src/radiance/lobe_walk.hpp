@@ -14,7 +14,7 @@ inline constexpr float rough_alpha = 0.4f;
 /// How far lobes are followed.
 struct LobeWalk {
     std::uint32_t max_depth = unlimited_depth;  // scattering vertices of a whole path
-    int most_rough = 3;  // of reflections at lobes that are no deltas; further ones count as diffuse
+    int most_rough = 10;  // of reflections at lobes that are no deltas; further ones count as diffuse
     float eagerness =
         4;  // a lobe that keeps the share a of the light is followed with probability eagerness · a
     bool sample_lights = true;  // else `found` is of no use
