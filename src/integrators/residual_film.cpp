@@ -74,6 +74,7 @@ void ResidualFilm::finish(std::span<PixelSums> pixels, const Adding& how) {
 /// The rows from next_row_ on; all around them are held.
 void ResidualFilm::add_rows(std::span<PixelSums> pixels, int end, const Adding& how) {
     const std::span rows = pixels.subspan(pixels_in(next_row_), pixels_in(end - next_row_));
+    if (filters_) find_contacts(guides_, how.threads);
     add_kind(rows, &PixelDoubt::residual,
              {{&PixelResidual::direct, &SplitRadiance::direct},
               {&PixelResidual::indirect, &SplitRadiance::indirect}},

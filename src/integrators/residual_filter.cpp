@@ -14,6 +14,22 @@ namespace {
 constexpr std::array<float, 3> spline{3.0f / 8, 1.0f / 4, 1.0f / 16};  // B₃, from its middle outwards
 constexpr float plane_tolerance = 0.5f;  // off the middle's plane, against a pixel's footprint and the step
 
+constexpr float least_rise = 0.2f;  // sine of the angle at which what rises from a surface meets it
+constexpr float most_gap = 8;       // between neighbours that touch, of the pixels that they cover
+
+/// By distances to contacts, how alike these are: what is twice as far away hardly is.
+constexpr std::array<std::array<float, contact_reach + 2>, contact_reach + 2> contact_likeness = [] {
+    std::array<std::array<float, contact_reach + 2>, contact_reach + 2> table{};
+    for (std::size_t a = 0; a < table.size(); ++a)
+        for (std::size_t b = 0; b < table.size(); ++b) {
+            const float larger = static_cast<float>(std::max(a, b)) + 0.5f,
+                        smaller = static_cast<float>(std::min(a, b)) + 0.5f;
+            const float apart = 3 * (larger / smaller - 1);
+            table[a][b] = 1 / (1 + apart * apart * apart * apart);
+        }
+    return table;
+}();
+
 /// How alike two points of surfaces are, [0, 1].
 float likeness(const FilterGuide& a, const FilterGuide& b, float step) {
     if (a.material != b.material) return 0;
@@ -22,7 +38,36 @@ float likeness(const FilterGuide& a, const FilterGuide& b, float step) {
     float sharpened = sqr(sqr(cosine));  // cos³²
     sharpened = sqr(sqr(sqr(sharpened)));
     const float off = dot(b.position - a.position, a.normal) / (plane_tolerance * step * a.footprint);
-    return sharpened / (1 + sqr(sqr(off)));
+    const float near =
+        contact_likeness[static_cast<std::size_t>(a.contact)][static_cast<std::size_t>(b.contact)];
+    return sharpened * near / (1 + sqr(sqr(off)));
+}
+
+/// Whether the surface at `b`, so many pixels away, rises from that at `a`.
+bool rises(const FilterGuide& a, const FilterGuide& b, int pixels) {
+    if (b.footprint <= 0) return false;
+    const Vec3 way = b.position - a.position;
+    const float distance = length(way);
+    return dot(way, a.normal) > least_rise * distance
+           && distance < most_gap * static_cast<float>(pixels) * a.footprint;
+}
+
+/// Pixels to the nearest contact, along the picture's axes.
+int contact_distance(const FilterImage& image, int x, int y) {
+    const auto at = [&](int i, int j) {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width)
+               + static_cast<std::size_t>(i);
+    };
+    const FilterGuide& middle = image.guides[at(x, y)];
+    int nearest = contact_reach + 1;
+    if (middle.footprint <= 0) return nearest;
+    for (int j = std::max(0, y - contact_reach); j <= std::min(image.height - 1, y + contact_reach); ++j)
+        for (int i = std::max(0, x - contact_reach); i <= std::min(image.width - 1, x + contact_reach); ++i) {
+            const int pixels = std::max(std::abs(i - x), std::abs(j - y));
+            if (pixels > 0 && pixels < nearest && rises(middle, image.guides[at(i, j)], pixels))
+                nearest = pixels;
+        }
+    return nearest;
 }
 
 Spectrum ratio(Spectrum a, Spectrum b) {
@@ -136,6 +181,14 @@ void filter_picture(FilterImage& image, Layer::Kind kind, int levels, int thread
 }
 
 }  // namespace
+
+void find_contacts(FilterImage& image, int threads) {
+    parallel_for(threads, static_cast<std::size_t>(image.height), [&](std::size_t row) {
+        for (int x = 0; x < image.width; ++x)
+            image.guides[row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)].contact =
+                contact_distance(image, x, static_cast<int>(row));
+    });
+}
 
 void filter_along_surfaces(FilterImage& image, int levels, int threads) {
     filter_picture(image, Layer::Kind::values, levels, threads);

@@ -14,6 +14,7 @@ struct FilterGuide {
     Vec3 position, normal;
     float footprint = 0;         // metres that a pixel covers; 0: nothing to filter here
     std::uint32_t material = 0;  // what is of different ones is never mixed
+    int contact = 0;             // pixels to where another surface rises from this one; see find_contacts
 };
 
 /// A picture under the filter, row-major.
@@ -23,6 +24,13 @@ struct FilterImage {
     std::vector<Spectrum> values;
     std::vector<Spectrum> weights;  // that values have in means; empty: all the same
 };
+
+/// Contacts are looked for so far away, pixels; farther ones, and none, count as one more.
+inline constexpr int contact_reach = 4;
+
+/// Gives all guides their distances to contacts: corners of rooms, feet of things, as the picture shows them.
+/// What maps get wrong there is as narrow as a pixel or two, and far more than around.
+void find_contacts(FilterImage& image, int threads);
 
 /// How far a filter of so many levels reaches, pixels.
 constexpr int filter_reach(int levels) { return 2 * ((1 << levels) - 1); }
@@ -59,7 +67,9 @@ constexpr std::size_t smoothing_bytes(std::size_t parts) {
 /// Levels of the filter over which squares of noise are averaged: fewer values scatter too much themselves.
 inline constexpr int noise_levels = 2;
 
-/// How far away the pixels are that smooth_noise takes into account.
-constexpr int smoothing_reach(int levels) { return filter_reach(levels) + filter_reach(noise_levels); }
+/// How far away the pixels are that find_contacts and smooth_noise take into account.
+constexpr int smoothing_reach(int levels) {
+    return filter_reach(levels) + filter_reach(noise_levels) + contact_reach;
+}
 
 }  // namespace relumine
