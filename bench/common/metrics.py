@@ -35,6 +35,13 @@ def average(every: list[Errors]) -> Errors:
                   maximum=statistics.fmean(e.maximum for e in every))
 
 
+def spread(every: list[Errors]) -> Errors | None:
+    """Standard deviations from seed to seed, of which there must be two or more."""
+    if len(every) < 2:
+        return None
+    return Errors(*(statistics.stdev(values) for values in zip(*map(dataclasses.astuple, every))))
+
+
 def error_of_mean(half_a: np.ndarray, half_b: np.ndarray, keep: np.ndarray) -> Errors:
     """What (A + B) / 2 is off by, from two independent, equally noisy halves: half of what A and B differ by.
 

@@ -179,6 +179,12 @@ class Metrics(unittest.TestCase):
         self.assertEqual((mean.l1, mean.signed, mean.maximum), (2, 0, 3))
         self.assertAlmostEqual(mean.rms, np.sqrt(12.5))
 
+    def test_spread_is_that_of_a_sample(self):
+        spread = metrics.spread([metrics.Errors(1, 3, -1, 2), metrics.Errors(3, 4, 1, 4)])
+        self.assertAlmostEqual(spread.l1, np.sqrt(2))
+        self.assertAlmostEqual(spread.signed, np.sqrt(2))
+        self.assertIsNone(metrics.spread([metrics.Errors(1, 3, -1, 2)]))
+
     def test_control_takes_whole_packets(self):
         self.assertEqual(metrics.control_rays(10, 80, 4096), 512)
         self.assertEqual(metrics.control_rays(0.001, 80, 4096), 16)

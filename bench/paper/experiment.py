@@ -125,10 +125,16 @@ class Lab:
             reference, about = self.converged(view, keep, smallest)
             if reference.passes == passes:
                 break
-        found = {name: metrics.average([metrics.errors(run.picture, reference.picture, keep) for run in several])
-                 for name, several in runs.items()}
         about["surface_pixels"] = int(keep.sum())
-        return {name: dataclasses.asdict(e) for name, e in found.items()}, about
+        every = {name: [metrics.errors(run.picture, reference.picture, keep) for run in several]
+                 for name, several in runs.items()}
+        return {name: over_seeds(several) for name, several in every.items()}, about
+
+
+def over_seeds(every: list[metrics.Errors]) -> dict:
+    """Means, and how much one seed differs from the next where there are several."""
+    spread = metrics.spread(every)
+    return {**dataclasses.asdict(metrics.average(every)), **({"spread": dataclasses.asdict(spread)} if spread else {})}
 
 
 def median(values: list[float]) -> float:

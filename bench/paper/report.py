@@ -50,6 +50,16 @@ def number(x: float | None, digits: int = 3) -> str:
     return f"{x:,.0f}" if abs(x) >= 1000 else f"{x:.{digits}g}"
 
 
+def signed_percent(x: float) -> str:
+    return f"{100 * x:+.3f} %"
+
+
+def with_spread(form, errors: dict, measure: str) -> str:
+    """The mean over seeds and, if there were several, how much one differs from the next."""
+    text = form(errors[measure])
+    return text if "spread" not in errors else f"{text} ± {form(errors['spread'][measure]).lstrip('+')}"
+
+
 def table(header: list[str], rows: Iterable[list[str]], texts: int = 1) -> list[str]:
     """A Markdown table; all columns but the first `texts` are right-aligned."""
     alignment = ["---"] * texts + ["--:"] * (len(header) - texts)
@@ -119,7 +129,8 @@ def table_of_errors(data: dict) -> list[str]:
     lines = ["## Time and error", "",
              "CPU s: user + system of rendering, without loading and building; median. In all: of the whole process. "
              "L1 = Σ|L − R| / ΣR (the paper's), rms = √mean(L − R)² / mean R, signed = Σ(L − R) / ΣR, max = max|L − R| / "
-             "mean R; pixels that see the environment alone are left out. Errors are means over the repeats.", ""]
+             "mean R; pixels that see the environment alone are left out. Errors are means over the repeats; behind ± the standard "
+             "deviation from one to the next.", ""]
     rows = []
     for cell in data["methods"].values():
         for name, m in cell["methods"].items():
@@ -127,7 +138,8 @@ def table_of_errors(data: dict) -> list[str]:
                 continue
             e = m["errors"]
             rows.append([label(cell), f"`{name}`", number(m["cpu_seconds"]), number(m["process_cpu_seconds"]),
-                         percent(e["l1"]), percent(e["rms"]), f"{100 * e['signed']:+.3f} %", number(e["maximum"])])
+                         with_spread(percent, e, "l1"), with_spread(percent, e, "rms"), with_spread(signed_percent, e, "signed"),
+                         with_spread(number, e, "maximum")])
     lines += table(["scene, environment", "method", "CPU s", "in all", "L1", "rms", "signed", "max"], rows, texts=2)
     return [*lines, *about_references(data)]
 
