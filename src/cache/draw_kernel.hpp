@@ -33,8 +33,8 @@ class TexelSteps {
 
 /// What surfels are drawn into.
 struct Canvas {
-    Mask& open;                         // bits that may be drawn; those drawn are taken away
-    Mask& lit;                          // bits drawn that may not be black are added
+    SplitMask& open;                    // bits that may be drawn; those drawn are taken away
+    SplitMask& lit;                     // bits drawn that may not be black are added
     std::span<std::uint32_t> radiance;  // mask_side², row-major in (y, x); black surfels leave it alone
     std::span<std::uint32_t> direct;    // the same, or empty
 };
@@ -54,7 +54,8 @@ struct DrawnSurfels {
 };
 
 /// Draws surfels where bits are open, the first on top; whether any bit was. `masks[i]` belongs to
-/// surfel i; the canvas's arrays must have room for surfel_padding more elements past what is drawn.
+/// surfel i; surfel_padding more than those given are read; the canvas's arrays must have room for
+/// surfel_padding more elements past what is drawn.
 bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, const RecordTexture& texture,
                   const Canvas& canvas);
 
@@ -63,8 +64,18 @@ bool draw_surfels(std::span<const BitRect> masks, const DrawnSurfels& surfels, c
 bool draw_missed(std::span<const BitRect> masks, std::span<const TexelRect> texels,
                  const RecordTexture& texture, const Canvas& canvas);
 
+/// The same for a receiver that is not rotated, for whom the square at infinity is the record's.
+bool copy_missed(const RecordTexture& texture, const Canvas& canvas);
+
 /// Takes what lies in the trails of a layer, whose surfels have been drawn, from the open bits and adds it to
-/// the unknown ones. `closed`: the trails of the layers before; those of this one are added.
-void close_trails(std::span<const BitRect> trails, Mask& closed, Mask& open, Mask& unknown);
+/// the unknown ones. `closed`: the trails of the layers before; those of this one are added. surfel_padding
+/// more trails than those given are read.
+void close_trails(std::span<const BitRect> trails, SplitMask& closed, SplitMask& open, SplitMask& unknown);
+
+/// The bits that are not covered, by halves.
+[[nodiscard]] SplitMask rest_of(const Mask& covered);
+
+/// As SplitMask::joined.
+void join(const SplitMask& mask, Mask& out);
 
 }  // namespace relumine

@@ -222,6 +222,7 @@ TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
                           dot ? std::uint8_t{1} : random_byte(i, 8, 1, 9)});
     }
     masks[7] = {};
+    masks.resize(count + surfel_padding);
     Drawing expected;
     expected.open.fill({3, 120, 5, 128});
     const int open_before = expected.open.count();
@@ -231,16 +232,17 @@ TEST(DrawKernel, HasTheBitsOfItsDefinitionOnEveryTarget) {
         for (const bool with_direct : {false, true}) {
             Drawing out;
             out.open.fill({3, 120, 5, 128});
-            const Canvas canvas{out.open, out.lit, out.radiance,
+            SplitMask open(out.open), lit;
+            const Canvas canvas{open, lit, out.radiance,
                                 with_direct ? std::span(out.direct) : std::span<std::uint32_t>()};
-            EXPECT_TRUE(draw_surfels(masks, {texels, colored}, record, canvas));
-            EXPECT_EQ(out.open, expected.open);
-            EXPECT_EQ(out.lit, expected.lit);
+            EXPECT_TRUE(draw_surfels(std::span(masks).first(count), {texels, colored}, record, canvas));
+            EXPECT_EQ(open.joined(), expected.open);
+            EXPECT_EQ(lit.joined(), expected.lit);
             EXPECT_EQ(out.radiance, expected.radiance);
             EXPECT_TRUE(!with_direct || out.direct == expected.direct);
             EXPECT_FALSE(draw_surfels(std::span(masks).first(0), {texels, 0}, record, canvas));
-            EXPECT_FALSE(
-                draw_surfels(masks, {texels, colored}, record, canvas));  // nothing is open there now
+            EXPECT_FALSE(draw_surfels(std::span(masks).first(count), {texels, colored}, record,
+                                      canvas));  // nothing is open there now
         }
     });
 }
@@ -272,15 +274,54 @@ TEST(DrawKernel, DrawsOnlyWhatWasMissedOnEveryTarget) {
         for (const bool with_direct : {false, true}) {
             Drawing out;
             out.open.fill({3, 120, 5, 128});
-            const Canvas canvas{out.open, out.lit, out.radiance,
+            SplitMask open(out.open), lit;
+            const Canvas canvas{open, lit, out.radiance,
                                 with_direct ? std::span(out.direct) : std::span<std::uint32_t>()};
             EXPECT_TRUE(draw_missed(masks, texels, {texture, direct, side, missed}, canvas));
-            EXPECT_EQ(out.open, expected.open);
-            EXPECT_EQ(out.lit, expected.lit);
+            EXPECT_EQ(open.joined(), expected.open);
+            EXPECT_EQ(lit.joined(), expected.lit);
             EXPECT_EQ(out.radiance, expected.radiance);
             EXPECT_TRUE(!with_direct || out.direct == expected.direct);
         }
     });
+}
+
+TEST(DrawKernel, CopiesWhatWasMissedOnEveryTarget) {
+    for (const std::size_t side : {16u, 32u, 64u, 128u}) {
+        std::vector<std::uint32_t> texture(side * side + surfel_padding), direct = texture;
+        std::vector<std::uint8_t> missed(side * side / 8);
+        for (std::size_t i = 0; i < side * side; ++i) {
+            texture[i] = static_cast<std::uint32_t>(hash(i, 1));
+            direct[i] = static_cast<std::uint32_t>(hash(i, 2));
+        }
+        for (std::size_t i = 0; i < missed.size(); ++i)  // whole bytes too, and rows that were hit
+            missed[i] =
+                i / 7 % 3 == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(hash(i, 3) | (i % 2) * 255);
+        Drawing expected;
+        expected.open.fill({3, 120, 5, 128});
+        const auto byte = [](std::size_t i) { return static_cast<std::uint8_t>(i); };
+        const std::size_t scale = mask_side / side;
+        for (std::size_t v = 0; v < side; ++v)
+            for (std::size_t u = 0; u < side; ++u)
+                draw_missed_one(
+                    {byte(u * scale), byte((u + 1) * scale), byte(v * scale), byte((v + 1) * scale)},
+                    {byte(u), byte(v), 1, 1}, {texture, direct, side, missed}, expected);
+        on_every_target([&] {
+            for (const bool with_direct : {false, true}) {
+                Drawing out;
+                out.open.fill({3, 120, 5, 128});
+                SplitMask open(out.open), lit;
+                const Canvas canvas{open, lit, out.radiance,
+                                    with_direct ? std::span(out.direct) : std::span<std::uint32_t>()};
+                EXPECT_TRUE(copy_missed({texture, direct, side, missed}, canvas));
+                EXPECT_EQ(open.joined(), expected.open);
+                EXPECT_EQ(lit.joined(), expected.lit);
+                EXPECT_EQ(out.radiance, expected.radiance);
+                EXPECT_TRUE(!with_direct || out.direct == expected.direct);
+                EXPECT_FALSE(copy_missed({texture, direct, side, missed}, canvas));
+            }
+        });
+    }
 }
 
 TEST(DrawKernel, ClosesTrailsOnEveryTarget) {
@@ -295,14 +336,26 @@ TEST(DrawKernel, ClosesTrailsOnEveryTarget) {
         trails.push_back(random_rect(i, 50, 40));
         expected_closed.fill(trails.back());
     }
+    trails.resize(30 + surfel_padding);
     const Mask expected_unknown = unknown | (expected_closed & open), expected_open = open & ~expected_closed;
     ASSERT_GT(expected_unknown.count(), 1000);
     on_every_target([&] {
-        Mask now_open = open, now_unknown = unknown, closed = closed_before;
-        close_trails(trails, closed, now_open, now_unknown);
-        EXPECT_EQ(now_open, expected_open);
-        EXPECT_EQ(now_unknown, expected_unknown);
-        EXPECT_EQ(closed, expected_closed);
+        SplitMask now_open(open), now_unknown(unknown), closed(closed_before);
+        close_trails(std::span(trails).first(30), closed, now_open, now_unknown);
+        EXPECT_EQ(now_open.joined(), expected_open);
+        EXPECT_EQ(now_unknown.joined(), expected_unknown);
+        EXPECT_EQ(closed.joined(), expected_closed);
+    });
+}
+
+TEST(DrawKernel, SplitsAndJoinsMasksOnEveryTarget) {
+    Mask mask;
+    for (std::uint64_t i = 0; i < 40; ++i) mask.fill(random_rect(i, 90, 9));
+    on_every_target([&] {
+        EXPECT_EQ(rest_of(mask).joined(), ~mask);
+        Mask joined;
+        join(SplitMask(mask), joined);
+        EXPECT_EQ(joined, mask);
     });
 }
 

@@ -112,6 +112,26 @@ struct alignas(64) Mask {
     }
 };
 
+/// A mask by halves of 64 columns: few rectangles touch both, and a vector holds twice as many rows of a
+/// half.
+struct alignas(64) SplitMask {
+    std::array<std::array<std::uint64_t, mask_side>, 2>
+        halves{};  // columns from 0 and from 64 on, row by row
+
+    SplitMask() = default;
+    explicit SplitMask(const Mask& mask) {
+        for (std::size_t y = 0; y < mask_side; ++y) {
+            halves[0][y] = mask.rows[y].low;
+            halves[1][y] = mask.rows[y].high;
+        }
+    }
+    [[nodiscard]] Mask joined() const {
+        Mask mask;
+        for (std::size_t y = 0; y < mask_side; ++y) mask.rows[y] = {halves[0][y], halves[1][y]};
+        return mask;
+    }
+};
+
 /// A bit for each cell of 2 × 2 bits, row by row.
 using CellMask = std::array<std::uint64_t, mask_side / 2>;
 

@@ -215,15 +215,5 @@ void project_surfels(const Surfels& surfels, std::size_t begin, std::size_t end,
     HWY_DYNAMIC_DISPATCH(project)(surfels, begin, end, projection, masks.data(), trails.data());
 }
 
-void place_surfels(const Surfels& surfels, std::size_t begin, std::size_t end, int side,
-                   std::span<BitRect> masks) {
-    const int scale = mask_side / side;
-    const auto byte = [&](int texels) { return static_cast<std::uint8_t>(texels * scale); };
-    for (std::size_t i = begin; i < end; ++i) {
-        const TexelRect& r = surfels.texels[i];
-        masks[i - begin] = {byte(r.u), byte(r.u + r.width), byte(r.v), byte(r.v + r.height)};
-    }
-}
-
 }  // namespace relumine
 #endif

@@ -33,9 +33,4 @@ inline constexpr float growth_margin = 4;  // bits: small surfels may grow more
 void project_surfels(const Surfels& surfels, std::size_t begin, std::size_t end, const Projection& projection,
                      std::span<BitRect> masks, std::span<BitRect> trails);
 
-/// The surfels [begin, end) where the record has them: what is at infinity, for receivers that are not
-/// rotated.
-void place_surfels(const Surfels& surfels, std::size_t begin, std::size_t end, int side,
-                   std::span<BitRect> masks);
-
 }  // namespace relumine

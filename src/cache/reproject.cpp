@@ -11,44 +11,60 @@ constexpr float same_normals = 1 - 1e-7f;  // cosine
 
 class RecordReprojector {
   public:
-    RecordReprojector(const Record& record, Reprojection& out) : record_(record), out_(out) {
-        for (std::size_t y = 0; y < mask_side; ++y) open_.rows[y] = ~out.covered.rows[y];
-    }
+    RecordReprojector(const Record& record, bool rotated, Reprojection& out)
+        : record_(record), rotated_(rotated), out_(out), open_(rest_of(out.covered)) {}
 
     void run() {
         const Surfels& s = record_.surfels;
-        for (std::size_t layer = 0; layer < s.layers(); ++layer) {
-            const bool at_infinity = layer + 1 == s.layers();
-            cover(s.layer_begin[layer], s.black_begin[layer], s.layer_begin[layer + 1], at_infinity);
-            if (!at_infinity) close_behind(s.layer_begin[layer], s.layer_begin[layer + 1]);
+        for (std::size_t layer = 0; layer + 1 < s.layers(); ++layer) {
+            cover(s.layer_begin[layer], s.black_begin[layer], s.layer_begin[layer + 1]);
+            close_behind(s.layer_begin[layer], s.layer_begin[layer + 1]);
         }
-        for (std::size_t y = 0; y < mask_side; ++y)
-            out_.covered.rows[y] = ~(open_.rows[y] | out_.unknown.rows[y]);
+        cover_at_infinity();
+        Mask lit, open;
+        join(lit_, lit);
+        join(open_, open);
+        join(unknown_, out_.unknown);
+        for (std::size_t y = 0; y < mask_side; ++y) {
+            out_.lit.rows[y] = out_.lit.rows[y] | lit.rows[y];
+            out_.covered.rows[y] = ~(open.rows[y] | out_.unknown.rows[y]);
+        }
     }
 
   private:
-    void cover(std::size_t begin, std::size_t black_begin, std::size_t end, bool at_infinity) {
-        const std::size_t count = end - begin;
-        const RecordTexture texture{record_.radiance,
-                                    record_.direct.empty() ? record_.radiance : record_.direct,
-                                    static_cast<std::size_t>(record_.side), record_.surfels.missed};
-        const Canvas canvas{open_, out_.lit, out_.radiance, out_.direct};
-        const auto masks = std::span(out_.masks).subspan(begin, count);
-        const auto texels = std::span(record_.surfels.texels).subspan(begin, count);
-        const bool any = at_infinity ? draw_missed(masks, texels, texture, canvas)
-                                     : draw_surfels(masks, {texels, black_begin - begin}, texture, canvas);
+    void cover(std::size_t begin, std::size_t black_begin, std::size_t end) {
+        const auto masks = std::span(out_.masks).subspan(begin, end - begin);
+        const auto texels = std::span(record_.surfels.texels).subspan(begin, end - begin);
+        out_.layers += draw_surfels(masks, {texels, black_begin - begin}, texture(), canvas()) ? 1 : 0;
+    }
+
+    void cover_at_infinity() {
+        const Surfels& s = record_.surfels;
+        const std::size_t begin = s.infinity_begin(), count = s.count - begin;
+        const bool any = rotated_
+                             ? draw_missed(std::span(out_.masks).subspan(begin, count),
+                                           std::span(s.texels).subspan(begin, count), texture(), canvas())
+                             : copy_missed(texture(), canvas());
         out_.layers += any ? 1 : 0;
     }
 
+    [[nodiscard]] RecordTexture texture() const {
+        return {record_.radiance, record_.direct.empty() ? record_.radiance : record_.direct,
+                static_cast<std::size_t>(record_.side), record_.surfels.missed};
+    }
+    [[nodiscard]] Canvas canvas() { return {open_, lit_, out_.radiance, out_.direct}; }
+
     /// What the move has opened behind this layer: farther layers must not fill it.
     void close_behind(std::size_t begin, std::size_t end) {
-        close_trails(std::span(out_.trails).subspan(begin, end - begin), closed_, open_, out_.unknown);
+        close_trails(std::span(out_.trails).subspan(begin, end - begin), closed_, open_, unknown_);
     }
 
     const Record& record_;
+    bool rotated_;
     Reprojection& out_;
-    Mask open_;    // neither covered nor unknown
-    Mask closed_;  // the trails of the layers so far
+    SplitMask open_;           // neither covered nor unknown
+    SplitMask lit_, unknown_;  // by this record
+    SplitMask closed_;         // the trails of the layers so far
 };
 
 }  // namespace
@@ -93,14 +109,11 @@ void reproject(const Record& record, const Receiver& receiver, Reprojection& out
     const Vec3 shift = receiver.frame.to_local({record.position - receiver.position}).v;
     const std::size_t infinity_begin = s.infinity_begin();
     project_surfels(s, 0, infinity_begin, {turn, shift, rotated, record.side}, out.masks, out.trails);
-    const auto masks = std::span(out.masks).subspan(infinity_begin),
-               trails = std::span(out.trails).subspan(infinity_begin);
     if (rotated)
-        project_surfels(s, infinity_begin, s.count, {turn, {}, true, record.side}, masks, trails);
-    else
-        place_surfels(s, infinity_begin, s.count, record.side, masks);
-    out.unknown = Mask{};
-    RecordReprojector(record, out).run();
+        project_surfels(s, infinity_begin, s.count, {turn, {}, true, record.side},
+                        std::span(out.masks).subspan(infinity_begin),
+                        std::span(out.trails).subspan(infinity_begin));
+    RecordReprojector(record, rotated, out).run();
     ++out.records;
 }
 
