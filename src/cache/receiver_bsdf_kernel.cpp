@@ -201,17 +201,42 @@ HWY_INLINE void evaluate_cells_as(const ReceiverBsdf& bsdf, const Directions& ce
         }
 }
 
-/// Σ over each of Lanes tiles of its lit bits' radiance.
-HWY_INLINE cells::Colors tile_sums(std::span<const std::uint32_t> radiance, const Mask& lit, std::size_t y,
-                                   std::size_t x) {
-    const auto of_columns = [&](std::size_t column) {
-        return cells::add(cells::Cells(radiance, lit, 4 * y, column).sums(),
-                          cells::Cells(radiance, lit, 4 * y + 2, column).sums());
-    };
-    const cells::Colors low = of_columns(4 * x), high = of_columns(4 * x + 2 * hn::Lanes(F()));
-    return {cells::sum_pairs(low.r, high.r), cells::sum_pairs(low.g, high.g),
-            cells::sum_pairs(low.b, high.b)};
-}
+/// Radiance over a row of tiles of 4 × 4 bits. `all_lit`: all bits are, and none need be asked.
+class TileRow {
+  public:
+    TileRow(const std::uint32_t* radiance, const MaskRow* lit) : radiance_(radiance), lit_(lit) {}
+
+    /// Σ over each of Lanes tiles from the one whose bits begin at `x` on.
+    template <bool all_lit>
+    HWY_INLINE cells::Colors tiles(std::size_t x) const {
+        const auto pairs = [&](std::size_t from) HWY_ATTR {
+            return add_pairs(columns<all_lit>(from), columns<all_lit>(from + hn::Lanes(F())));
+        };
+        return add_pairs(pairs(x), pairs(x + 2 * hn::Lanes(F())));
+    }
+
+  private:
+    /// Σ over four rows of Lanes columns from `x` on.
+    template <bool all_lit>
+    HWY_INLINE cells::Colors columns(std::size_t x) const {
+        cells::Colors sum{hn::Zero(F()), hn::Zero(F()), hn::Zero(F())};
+        for (std::size_t y = 0; y < 4; ++y) {
+            const std::uint32_t* at = radiance_ + y * mask_side + x;
+            const auto packed = all_lit ? hn::LoadU(cells::U(), at)
+                                        : hn::MaskedLoad(cells::lanes_of(lit_[y], x), cells::U(), at);
+            sum = cells::add_unpacked(packed, sum);
+        }
+        return sum;
+    }
+
+    static HWY_INLINE cells::Colors add_pairs(const cells::Colors& low, const cells::Colors& high) {
+        return {cells::sum_pairs(low.r, high.r), cells::sum_pairs(low.g, high.g),
+                cells::sum_pairs(low.b, high.b)};
+    }
+
+    const std::uint32_t* radiance_;  // of the first bit
+    const MaskRow* lit_;             // four rows
+};
 
 template <bool Stretched>
 HWY_INLINE void reflect_tiles_as(const ReceiverBsdf& bsdf, const Directions& directions,
@@ -223,15 +248,20 @@ HWY_INLINE void reflect_tiles_as(const ReceiverBsdf& bsdf, const Directions& dir
     Spectrums sum{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
     for (std::size_t y = 0; y < side; ++y) {
         const MaskRow* rows = &lit.rows[4 * y];
-        const MaskRow any = (rows[0] | rows[1]) | (rows[2] | rows[3]);
+        const MaskRow any = (rows[0] | rows[1]) | (rows[2] | rows[3]),
+                      all = (rows[0] & rows[1]) & (rows[2] & rows[3]);
+        const TileRow tiles(&radiance[4 * y * mask_side], rows);
         for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
             const int column = static_cast<int>(4 * x);
-            if ((any.bits(column, half_width) | any.bits(column + half_width, half_width)) == 0) continue;
+            const auto lit_bits = [&](const MaskRow& row, int from) { return row.bits(from, half_width); };
+            if ((lit_bits(any, column) | lit_bits(any, column + half_width)) == 0) continue;
             const std::size_t at = y * side + x;
             const Spectrums s = above_horizon<Stretched>(
                 prepared, {hn::LoadU(f, &directions.x[at]), hn::LoadU(f, &directions.y[at]),
                            hn::LoadU(f, &directions.z[at])});
-            const cells::Colors light = tile_sums(radiance, lit, y, x);
+            const bool all_lit =
+                (lit_bits(all, column) & lit_bits(all, column + half_width)) == lit_bits(~MaskRow{}, 0);
+            const cells::Colors light = all_lit ? tiles.tiles<true>(4 * x) : tiles.tiles<false>(4 * x);
             sum = {hn::MulAdd(light.r, s.r, sum.r), hn::MulAdd(light.g, s.g, sum.g),
                    hn::MulAdd(light.b, s.b, sum.b)};
         }
