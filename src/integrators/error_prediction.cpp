@@ -10,9 +10,6 @@ constexpr float unseen = 0.3f;
 
 constexpr float least_albedo = 1e-5f;  // that anything is divided by
 
-/// Pixels that count in a mean over noise_levels of the filter, (Σw)² / Σw², on an open plane.
-constexpr float averaged_pixels = 65.6f;
-
 /// Samples are spread well over the pixel: of an edge through it, only those near the edge are in doubt.
 float variance_of_samples(float count, float sum, float squares) {
     if (count < 2) return 0;
@@ -20,11 +17,11 @@ float variance_of_samples(float count, float sum, float squares) {
     return spread * std::sqrt(count);
 }
 
-/// So many of the pixels that a mean of squares comes from matter in it, by the mean of their own squares:
-/// a single rare find is one source.
-float sources_of(float mean, float mean_square) {
+/// So many of the pixels that a mean comes from matter in it, by the mean of their squares and what such
+/// means leave of the variance of independent values: a single rare find is one source.
+float sources_of(float mean, float mean_square, float variance_left) {
     if (!(mean_square > 0)) return 1;
-    return std::max(1.0f, averaged_pixels * mean * (mean / mean_square));
+    return std::max(1.0f, mean * (mean / mean_square) / variance_left);
 }
 
 }  // namespace
@@ -59,8 +56,8 @@ float deviation_left(const PixelDoubt& doubt) {
     return std::min(alone, of_one_ray * std::pow(doubt.residual.rays, -power)) * doubt.deviation;
 }
 
-std::vector<float> noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,
-                                   NoiseEstimate PixelDoubt::*kind, int threads) {
+NoiseVariances noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,
+                               NoiseEstimate PixelDoubt::*kind, int threads) {
     FilterParts around(2);  // noise, and its squares
     for (const PixelDoubt& d : doubts) {
         const float scale = d.albedo > least_albedo ? 1 / sqr(d.albedo) : 0;
@@ -68,12 +65,17 @@ std::vector<float> noise_variances(const FilterImage& guides, std::span<const Pi
         around[0].push_back({noise.independent * scale, noise.halves * scale, noise.rays});
         around[1].emplace_back(sqr(noise.independent * scale));
     }
-    filter_along_surfaces(guides, around, noise_levels, threads);
-    std::vector<float> variances;
-    variances.reserve(doubts.size());
+    FilterParts left(1, std::vector<Spectrum>(doubts.size(), Spectrum{1}));
+    filter_along_surfaces(guides, around, left, noise_levels, threads);
+    NoiseVariances variances;
+    variances.expected.reserve(doubts.size());
+    variances.cautious.reserve(doubts.size());
     for (std::size_t i = 0; i < doubts.size(); ++i) {
         const Spectrum& mean = around[0][i];
-        variances.push_back(variance_of_sum({mean.r, mean.g, mean.b, sources_of(mean.r, around[1][i].r)}));
+        const NoiseEstimate estimate{mean.r, mean.g, mean.b};
+        variances.expected.push_back(variance_of_sum(estimate));
+        variances.cautious.push_back(
+            cautious_variance(estimate, sources_of(mean.r, around[1][i].r, left[0][i].r)));
     }
     return variances;
 }

@@ -37,11 +37,10 @@ class DoubtSum {
 /// One sigma of what maps are still wrong by after the filter.
 [[nodiscard]] float deviation_left(const PixelDoubt& doubt);
 
-/// The variance of what rays have found in a pixel, over the square of its `albedo`, from the pixels around
-/// it on the same surface: few rays alone do not know how much they scatter. Row-major, as `guides` (a
-/// picture without values).
-[[nodiscard]] std::vector<float> noise_variances(const FilterImage& guides,
-                                                 std::span<const PixelDoubt> doubts,
-                                                 NoiseEstimate PixelDoubt::*kind, int threads);
+/// The variances of what rays have found in pixels, over the squares of their `albedo`, from the pixels
+/// around them on the same surface: few rays alone do not know how much they scatter. Row-major, as `guides`
+/// (a picture without values).
+[[nodiscard]] NoiseVariances noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,
+                                             NoiseEstimate PixelDoubt::*kind, int threads);
 
 }  // namespace relumine

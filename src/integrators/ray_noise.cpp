@@ -13,23 +13,16 @@ constexpr float steepest = 3;      // a of smooth integrands
 constexpr int bisections = 8;      // of [1, steepest]: to .01
 constexpr float doubtful = 32;     // so many sources weigh as much as the doubt that points are well spread
 
-/// Of halves over independent rays, 1 as far as it is not known.
-float known_ratio(const NoiseEstimate& e) {
-    const float ratio = e.halves / e.independent;
-    return std::isinf(e.sources) ? ratio : (e.sources * ratio + doubtful) / (e.sources + doubtful);
-}
-
-/// The variance of the sum over that of independent rays.
-float variance_share(const NoiseEstimate& e) {
-    const float ratio = known_ratio(e);
-    if (ratio >= 1 || e.rays < fewest_rays) return 1;
+/// The variance of the sum over that of independent rays, by the ratio that halves have to these.
+float variance_share(float ratio, float rays) {
+    if (ratio >= 1 || rays < fewest_rays) return 1;
     // n^(1 − a) (2^a − 1) falls with a, from 1 at a = 1
     float low = 1, high = steepest;
     for (int i = 0; i < bisections; ++i) {
         const float a = (low + high) / 2;
-        (std::pow(e.rays, 1 - a) * (std::exp2(a) - 1) > ratio ? low : high) = a;
+        (std::pow(rays, 1 - a) * (std::exp2(a) - 1) > ratio ? low : high) = a;
     }
-    return std::pow(e.rays, 1 - (low + high) / 2);
+    return std::pow(rays, 1 - (low + high) / 2);
 }
 
 }  // namespace
@@ -43,7 +36,13 @@ NoiseEstimate noise_of(const RayNoise& noise) {
 
 float variance_of_sum(const NoiseEstimate& e) {
     if (!(e.independent > 0)) return 0;
-    return e.independent * variance_share(e) * (1 + 1 / std::sqrt(std::max(e.sources, 1.0f)));
+    return e.independent * variance_share(e.halves / e.independent, e.rays);
+}
+
+float cautious_variance(const NoiseEstimate& e, float sources) {
+    if (!(e.independent > 0)) return 0;
+    const float ratio = (sources * e.halves / e.independent + doubtful) / (sources + doubtful);
+    return e.independent * variance_share(ratio, e.rays) * (1 + 1 / std::sqrt(std::max(sources, 1.0f)));
 }
 
 }  // namespace relumine

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 
 namespace relumine {
 
@@ -33,7 +32,6 @@ struct NoiseEstimate {
     float independent = 0;  // as if the rays were
     float halves = 0;       // as if the sequence's halves were
     float rays = 0;
-    float sources = std::numeric_limits<float>::infinity();  // independent ones that they are means of
 
     void add(const NoiseEstimate& other) {
         independent += other.independent;
@@ -45,9 +43,12 @@ struct NoiseEstimate {
 
 /// The variance of the sum where it falls as a power of the number of rays, n^-a: halves that are independent
 /// then differ by n^-a (2^a − 1), single rays by n^-1, and the ratio of the two tells a. Well spread points
-/// gain much where the integrand is smooth and nothing where it is noise. What few sources say of that is
-/// chance: rare finds, most of all, must not be taken for what is well known. So much of the ratio is
-/// believed as there are sources, and the variance is raised by its own relative error.
+/// gain much where the integrand is smooth and nothing where it is noise.
 [[nodiscard]] float variance_of_sum(const NoiseEstimate& estimate);
+
+/// What it may well be if the estimate is a mean over so many independent ones: of the ratio so much is
+/// believed as there are, and the variance is raised by its own relative error. Few rare finds, most of all,
+/// must not be taken for what is well known because they happen to lie in both halves.
+[[nodiscard]] float cautious_variance(const NoiseEstimate& estimate, float sources);
 
 }  // namespace relumine

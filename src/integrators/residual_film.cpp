@@ -110,7 +110,7 @@ void ResidualFilm::forget_rows() {
 /// residuals of dark pixels between bright ones are much larger quotients.
 void ResidualFilm::add_kind(std::span<PixelSums> rows, NoiseEstimate PixelDoubt::*kind,
                             const std::vector<Part>& parts, int threads) {
-    std::vector<float> variances = noise_variances(guides_, doubts_, kind, threads);
+    NoiseVariances noise = noise_variances(guides_, doubts_, kind, threads);
     if (filters_) {
         FilterImage weighed = guides_;
         weighed.weights.reserve(residuals_.size());
@@ -121,11 +121,11 @@ void ResidualFilm::add_kind(std::span<PixelSums> rows, NoiseEstimate PixelDoubt:
             for (const PixelResidual& r : residuals_)
                 values[k].push_back(divided(r.*parts[k].found, r.albedo));
         }
-        variances = smooth_noise(std::move(weighed), values, variances, filter_levels, threads);
+        noise.expected = smooth_noise(std::move(weighed), values, noise, filter_levels, threads);
         for (std::size_t k = 0; k < parts.size(); ++k) add_part(rows, parts[k], values[k]);
     }
     for (std::size_t i = 0; i < rows.size(); ++i)
-        rows[i].error.variance += variances[first_added() + i] * sqr(doubts_[first_added() + i].albedo);
+        rows[i].error.variance += noise.expected[first_added() + i] * sqr(doubts_[first_added() + i].albedo);
 }
 
 void ResidualFilm::add_part(std::span<PixelSums> rows, const Part& part,

@@ -199,14 +199,21 @@ void filter_variances(FilterImage& variances, int levels, int threads) {
 }
 
 void filter_along_surfaces(const FilterImage& guides, FilterParts& parts, int levels, int threads) {
-    std::vector<Layer> layers(parts.size());
+    FilterParts none;
+    filter_along_surfaces(guides, parts, none, levels, threads);
+}
+
+void filter_along_surfaces(const FilterImage& guides, FilterParts& parts, FilterParts& variances, int levels,
+                           int threads) {
+    std::vector<Layer> layers;
+    for (auto& part : parts) layers.push_back({std::move(part), nullptr, Layer::Kind::values});
+    for (auto& part : variances) layers.push_back({std::move(part), nullptr, Layer::Kind::variances});
     std::vector<Layer*> all;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        layers[k].values = std::move(parts[k]);
-        all.push_back(&layers[k]);
-    }
+    for (Layer& layer : layers) all.push_back(&layer);
     for (int level = 0; level < levels; ++level) filter_level(guides, all, level, threads);
-    for (std::size_t k = 0; k < parts.size(); ++k) parts[k] = std::move(layers[k].values);
+    std::size_t k = 0;
+    for (FilterParts* group : {&parts, &variances})
+        for (auto& part : *group) part = std::move(layers[k++].values);
 }
 
 namespace {
@@ -214,12 +221,13 @@ namespace {
 /// What smooth_noise filters, level by level.
 class Smoothing {
   public:
-    Smoothing(FilterImage guides, FilterParts& parts, const std::vector<float>& variances, int threads)
+    Smoothing(FilterImage guides, FilterParts& parts, const NoiseVariances& variances, int threads)
         : guides_(std::move(guides)), threads_(threads), parts_(parts.size()) {
         weights_.values = std::exchange(guides_.weights, {});
         const bool weighed = !weights_.values.empty();
         for (const Spectrum& w : weights_.values) noise_weights_.values.emplace_back(luminance(w));
-        for (const float v : variances) noise_.values.emplace_back(v);
+        for (std::size_t i = 0; i < variances.expected.size(); ++i)
+            noise_.values.emplace_back(variances.expected[i], variances.cautious[i], 0.0f);
         noise_.kind = Layer::Kind::variances;
         noise_.weights = weighed ? &noise_weights_ : nullptr;
         for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -241,8 +249,17 @@ class Smoothing {
     [[nodiscard]] std::size_t parts() const { return parts_.size(); }
     [[nodiscard]] std::vector<Spectrum>& values(std::size_t part) { return parts_[part].values; }
     [[nodiscard]] const std::vector<Spectrum>& details(std::size_t part) const { return parts_[part].before; }
+    /// Its variance that is left after all levels so far, expected.
     [[nodiscard]] float noise(std::size_t i) const { return noise_.values[i].r; }
-    [[nodiscard]] float noise_before(std::size_t i) const { return noise_.before[i].r; }
+
+    struct DetailNoise {
+        float expected, cautious;
+    };
+    /// Variances of the last level's details.
+    [[nodiscard]] DetailNoise detail_noise(std::size_t i, int level) const {
+        const Spectrum sum = noise_.before[i] * at_level(detail_share, level) + noise_.values[i];
+        return {sum.r, sum.g};
+    }
 
     /// The luminance of the details together, squared, and averaged over a pixel's surroundings.
     [[nodiscard]] std::vector<Spectrum> energy() const {
@@ -266,7 +283,7 @@ class Smoothing {
 
 }  // namespace
 
-std::vector<float> smooth_noise(FilterImage guides, FilterParts& parts, const std::vector<float>& variances,
+std::vector<float> smooth_noise(FilterImage guides, FilterParts& parts, const NoiseVariances& variances,
                                 int levels, int threads) {
     const std::size_t count = guides.guides.size();
     Smoothing smoothing(std::move(guides), parts, variances, threads);
@@ -276,11 +293,11 @@ std::vector<float> smooth_noise(FilterImage guides, FilterParts& parts, const st
         smoothing.filter(level);
         const std::vector<Spectrum> seen = smoothing.energy();
         for (std::size_t i = 0; i < count; ++i) {
-            const float expected =
-                at_level(detail_share, level) * smoothing.noise_before(i) + smoothing.noise(i);
-            const float share = seen[i].r > expected ? 1 - expected / seen[i].r : 0;
+            const auto noise = smoothing.detail_noise(i, level);
+            const float share = seen[i].r > noise.cautious ? 1 - noise.cautious / seen[i].r : 0;
             for (std::size_t k = 0; k < kept.size(); ++k) kept[k][i] += smoothing.details(k)[i] * share;
-            error[i] += expected * share;
+            error[i] +=
+                sqr(1 - share) * std::max(0.0f, seen[i].r - noise.expected) + sqr(share) * noise.expected;
         }
     }
     for (std::size_t i = 0; i < count; ++i) {

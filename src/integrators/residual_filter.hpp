@@ -49,14 +49,21 @@ using FilterParts = std::vector<std::vector<Spectrum>>;
 
 /// filter_along_surfaces of several layers of values, for the guides of one picture.
 void filter_along_surfaces(const FilterImage& guides, FilterParts& parts, int levels, int threads);
+/// The same, and filter_variances of others.
+void filter_along_surfaces(const FilterImage& guides, FilterParts& parts, FilterParts& variances, int levels,
+                           int threads);
+
+/// Of noise, by pixel, of the luminance of all parts together.
+struct NoiseVariances {
+    std::vector<float> expected, cautious;  // as far as is known, and what it may well be
+};
 
 /// Smooths what may be noise and keeps what is more: level by level, a pixel's difference to its surroundings
-/// stays by the share of it, over the pixels around, that noise does not explain (Wiener's filter on the
-/// wavelet's details). `guides` may have weights: Σ weight · value is then what a mean keeps. `variances`: by
-/// pixel, of the luminance of the parts together. Returns the error that is left, likewise: noise, and
-/// details taken for it.
+/// stays by the share of it, over the pixels around, that noise does not explain, cautiously estimated
+/// (Wiener's filter on the wavelet's details). `guides` may have weights: Σ weight · value is then what a
+/// mean keeps. Returns the error that is left, a variance by pixel: noise, and details taken for it.
 [[nodiscard]] std::vector<float> smooth_noise(FilterImage guides, FilterParts& parts,
-                                              const std::vector<float>& variances, int levels, int threads);
+                                              const NoiseVariances& variances, int levels, int threads);
 
 /// What smooth_noise holds for each pixel beside its arguments, of so many parts: these, their details, and
 /// what of them is kept; weights, noise and its weights, and the energy of details, before a level and after.

@@ -30,6 +30,8 @@ FilterImage floor_with(const Value& value) {
     return image;
 }
 
+NoiseVariances known(const std::vector<float>& variances) { return {variances, variances}; }
+
 Spectrum noise(int x, int y) { return Spectrum{unit_float(static_cast<std::uint32_t>(hash(at(x, y), 1)))}; }
 
 TEST(ResidualFilter, KeepsAConstant) {
@@ -143,8 +145,8 @@ TEST(ResidualFilter, KeepsWhatIsWrongAlongAContact) {
         FilterImage image = corner_with(value);
         if (contacts) find_contacts(image, 1);
         FilterParts parts{std::exchange(image.values, {})};
-        (void)smooth_noise(std::move(image), parts, std::vector<float>(width * height, 0.25f / 12), levels,
-                           1);
+        (void)smooth_noise(std::move(image), parts, known(std::vector<float>(width * height, 0.25f / 12)),
+                           levels, 1);
         float sum = 0;
         for (int y = 0; y < height; ++y) sum += parts[0][at(23, y)].r / (0.3f * height);
         return sum;
@@ -228,7 +230,7 @@ Smoothed smoothed(float stripe, bool says_noise) {
         parts[1][i] = Spectrum{-part};
     }
     const std::vector<float> variances(guides.values.size(), says_noise ? 1.0f / 12 : 0);
-    const std::vector<float> error = smooth_noise(guides, parts, variances, levels, 2);
+    const std::vector<float> error = smooth_noise(guides, parts, known(variances), levels, 2);
     Smoothed result;
     double pixels = 0;
     for (int y = 8; y < height - 8; ++y) {
@@ -269,7 +271,7 @@ TEST(ResidualFilter, RareFindsKeepTheirEnergy) {
     FilterImage plain = guides;
     filter_along_surfaces(plain, levels, 1);  // keeps it all, but at the picture's border
     FilterParts parts{guides.values};
-    static_cast<void>(smooth_noise(guides, parts, variances, levels, 1));
+    static_cast<void>(smooth_noise(guides, parts, known(variances), levels, 1));
     EXPECT_NEAR(mean(parts[0]) / mean(plain.values), 1, 0.015);  // .890 where v − v′ is what noise explains
 }
 
@@ -282,7 +284,8 @@ TEST(ResidualFilter, TilesOfDifferentAlbedoKeepTheirEnergy) {
     guides.weights = guides.values;
     FilterParts parts{
         floor_with([&](int x, int y) { return Spectrum{found(x, y) / albedo(x, y).r}; }).values};
-    static_cast<void>(smooth_noise(guides, parts, std::vector<float>(guides.values.size(), 1e6f), levels, 1));
+    static_cast<void>(
+        smooth_noise(guides, parts, known(std::vector<float>(guides.values.size(), 1e6f)), levels, 1));
     double before = 0, after = 0;
     for (int y = 8; y < height - 8; ++y)
         for (int x = 12; x < width - 12; ++x) {
