@@ -53,11 +53,11 @@ class FieldBuilder {
         common_find_ = common_find();
         limit_strongest();
         FieldFigures figures;
-        figures.iterations = reflect();
+        Reflections reflections = reflect();
         BrightSurfaces bright = find_bright(cells, links_, irradiance_, middle_distance());
         if (!bright.cones.empty() && settings_.guided_rays > 0 && !stopped()) {
             guide(bright.cones);
-            figures.iterations = reflect();
+            reflections = reflect();
         }
         add_links_to_vectors();
         noisy_.smoothness.resize(cells.elements().size());
@@ -66,13 +66,19 @@ class FieldBuilder {
             straight_.resize(cells.elements().size());
             arrivals = make_arrivals(cells, links_, irradiance_, share(), straight_, settings_.threads);
         }
+        figures.iterations = reflections.computed();
         figures.elements = cells.elements().size();
         figures.links = links_.links.size();
         figures.unresolved = static_cast<double>(unresolved_)
                              / std::max<double>(1, static_cast<double>(links_.links.size() + unresolved_));
         const float most_found = std::max(common_find_, most_found_by_chance * bright.mean_radiance);
-        return {std::move(cells),  std::move(bright), std::move(arrivals),
-                std::move(noisy_), most_found,        figures};
+        return {std::move(cells),
+                std::move(bright),
+                std::move(arrivals),
+                std::move(noisy_),
+                most_found,
+                std::move(reflections),
+                figures};
     }
 
   private:
@@ -228,7 +234,7 @@ class FieldBuilder {
                                      : to[i];
             if (id != no_element)
                 links.links.push_back(make_link(id, l.ray, pack_direction(frame.to_local({l.direction})),
-                                                l.throughput * times));
+                                                l.throughput * times, l.lobes));
             else
                 ++unresolved_;
         }
@@ -239,8 +245,11 @@ class FieldBuilder {
         add_links(links_, traced_, traced.view.landings, traced.to, true);
         links_.end_element();
         FieldElement& element = cells_->elements()[traced_];
-        element.irradiance.add(traced.view.light, 1);
-        noisy_.light.push_back(traced.view.light);
+        IrradianceVector light = traced.view.light;
+        light.add(traced.view.reflected, 1);
+        element.irradiance.add(light, 1);
+        noisy_.light.push_back(light);
+        reflected_.push_back(traced.view.reflected.towards(element.normal));
         strongest_.push_back(traced.view.strongest);
         finds_.insert(finds_.end(), traced.view.finds.begin(), traced.view.finds.end());
         if (settings_.arrivals)
@@ -270,15 +279,17 @@ class FieldBuilder {
         const auto limit = std::max(static_cast<float>(most_by_chance * mean_light), common);
         for (std::size_t i = 0; i < traced_; ++i) {
             FieldElement& e = cells_->elements()[i];
-            const float found = luminance(strongest_[i].towards(e.normal)), most = limit * worth(i);
+            const Spectrum strongest = strongest_[i].towards(e.normal);
+            const float found = luminance(strongest), most = limit * worth(i);
             if (found <= most) continue;
+            reflected_[i] += strongest * (most / found - 1);
             e.irradiance.add(strongest_[i], most / found - 1);
             noisy_.light[i].add(strongest_[i], most / found - 1);
         }
         strongest_.clear();
     }
 
-    std::size_t reflect() {
+    Reflections reflect() {
         return iterate(links_, light_along_normals(), share(), settings_.bounces, settings_.threads,
                        irradiance_);
     }
@@ -305,7 +316,7 @@ class FieldBuilder {
                 const Guided& g = all_guided[i];
                 for (const Link& l : links_.of(first + i))
                     guided.links.push_back(
-                        make_link(l.to, l.ray, l.direction, l.value() * g.view.share[l.ray]));
+                        make_link(l.to, l.ray, l.direction, l.value() * g.view.share[l.ray], l.lobes));
                 add_links(guided, first + i, g.view.landings, g.to, false);
                 guided.end_element();
             }
@@ -313,9 +324,12 @@ class FieldBuilder {
         links_ = std::move(guided);
     }
 
-    [[nodiscard]] std::vector<Spectrum> light_along_normals() const {
-        std::vector<Spectrum> light;
-        for (const FieldElement& e : cells_->elements()) light.push_back(e.irradiance.towards(e.normal));
+    [[nodiscard]] ElementLight light_along_normals() const {
+        ElementLight light{{}, reflected_};
+        for (const FieldElement& e : cells_->elements())
+            light.straight.push_back(e.irradiance.towards(e.normal));
+        for (std::size_t i = 0; i < reflected_.size(); ++i)
+            light.straight[i] = light.straight[i] - reflected_[i];
         return light;
     }
 
@@ -352,6 +366,7 @@ class FieldBuilder {
     std::vector<Spectrum> irradiance_;
     std::size_t surveyed_ = 0, traced_ = 0, unresolved_ = 0;
     std::vector<IrradianceVector> strongest_;  // by traced element
+    std::vector<Spectrum> reflected_;          // likewise, of lights along lobes, as of its irradiance
     StraightLight straight_;                   // likewise, if arrivals are wanted
     std::vector<float> finds_;                 // of all rays, along lobes
     float common_find_ = infinity;

@@ -14,6 +14,7 @@ struct BuiltField {
     std::vector<ElementArrivals> arrivals;  // by element, where the settings want them
     NoisyLight noisy;
     float most_found;  // RadianceField::most_found()
+    Reflections reflections;
     FieldFigures figures;
 };
 

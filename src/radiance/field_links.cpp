@@ -2,7 +2,9 @@
 // Jacobi iterations over links.
 #include "radiance/field_links.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/executor.hpp"
 #include "base/hash.hpp"
@@ -15,10 +17,42 @@ constexpr std::size_t run = 1024;      // elements of a piece of work
 constexpr double least_change = 1e-4;  // of what is still to come, relative to all
 constexpr std::size_t most_iterations = 1000;
 
-Spectrum gathered(const FieldLinks& links, std::size_t element, std::span<const Spectrum> from) {
+/// What arrived after the last reflections, one after the other.
+class Arrivals {
+  public:
+    /// `kept`: of so many reflections.
+    Arrivals(std::size_t elements, std::size_t kept) : kept_(kept, std::vector<Spectrum>(elements)) {}
+
+    void add(std::span<const Spectrum> arriving) {
+        std::ranges::copy(arriving, kept_[count_++ % kept_.size()].begin());
+    }
+    /// `before` the last one; none if that has not been.
+    [[nodiscard]] const std::vector<Spectrum>* last(std::size_t before) const {
+        before = std::min(before, kept_.size() - 1);
+        return before >= count_ ? nullptr : &kept_[(count_ - 1 - before) % kept_.size()];
+    }
+
+  private:
+    std::vector<std::vector<Spectrum>> kept_;
+    std::size_t count_ = 0;
+};
+
+/// Lobes on the way have taken their reflections before.
+Spectrum gathered(const FieldLinks& links, std::size_t element, const Arrivals& from) {
     Spectrum sum;
-    for (const Link& link : links.of(element)) sum += link.value() * from[link.to];
+    for (const Link& link : links.of(element))
+        if (const auto* arriving = from.last(link.lobes)) sum += link.value() * (*arriving)[link.to];
     return sum;
+}
+
+std::size_t most_lobes(const FieldLinks& links) {
+    std::size_t most = 0;
+    for (const Link& link : links.links) most = std::max<std::size_t>(most, link.lobes);
+    return most;
+}
+
+void add(std::span<const Spectrum> more, std::vector<Spectrum>& sum) {
+    for (std::size_t i = 0; i < more.size(); ++i) sum[i] += more[i];
 }
 
 double total(std::span<const Spectrum> values) {
@@ -26,6 +60,17 @@ double total(std::span<const Spectrum> values) {
     for (const Spectrum& s : values)
         sum += std::abs(double{s.r}) + std::abs(double{s.g}) + std::abs(double{s.b});
     return sum;
+}
+
+/// What further reflections add, if light goes on falling as from one stretch of so many to the next.
+double still_to_come(std::span<const double> totals, std::size_t stretch) {
+    if (totals.size() < 2 * stretch) return infinity;
+    const auto sum = [](std::span<const double> values) {
+        return std::accumulate(values.begin(), values.end(), 0.0);
+    };
+    const double now = sum(totals.last(stretch)), before = sum(totals.last(2 * stretch).first(stretch));
+    const double ratio = before > 0 ? std::min(now / before, 0.999) : 0;
+    return now * ratio / (1 - ratio);
 }
 
 }  // namespace
@@ -36,12 +81,12 @@ Spectrum Link::value() const {
            * (1 / link_unit);
 }
 
-Link make_link(ElementId to, std::uint16_t ray, std::uint16_t direction, Spectrum t) {
+Link make_link(ElementId to, std::uint16_t ray, std::uint16_t direction, Spectrum t, std::uint8_t lobes) {
     const float dither = unit_float(static_cast<std::uint32_t>(hash(to, ray, direction)));
     const auto fixed = [&](float x) {
         return static_cast<std::uint16_t>(std::clamp(x * link_unit + dither, 0.0f, 65535.0f));
     };
-    return {to, ray, direction, {fixed(t.r), fixed(t.g), fixed(t.b)}};
+    return {to, ray, direction, {fixed(t.r), fixed(t.g), fixed(t.b)}, lobes};
 }
 
 std::uint16_t pack_direction(LocalDir w) {
@@ -57,26 +102,39 @@ LocalDir unpack_direction(std::uint16_t packed) {
     return {normalize({x, y, std::sqrt(std::max(0.0f, 1 - x * x - y * y))})};
 }
 
-std::size_t iterate(const FieldLinks& links, std::span<const Spectrum> light, float share,
-                    std::uint32_t bounces, int threads, std::vector<Spectrum>& irradiance) {
-    irradiance.assign(light.begin(), light.end());
-    std::vector<Spectrum> arriving(light.begin(), light.end()), next(light.size());
-    double before = total(arriving);
-    for (std::size_t i = 0; i < std::min<std::size_t>(bounces, most_iterations); ++i) {
-        // Only the last bounce's light travels on: sums of ever smaller terms.
-        parallel_for(threads, (next.size() + run - 1) / run, [&](std::size_t piece) {
-            for (std::size_t e = piece * run; e < std::min((piece + 1) * run, next.size()); ++e) {
-                next[e] = gathered(links, e, arriving) * share;
-                irradiance[e] += next[e];
-            }
-        });
-        arriving.swap(next);
-        const double now = total(arriving);
-        const double ratio = before > 0 ? std::min(now / before, 0.999) : 0;
-        before = now;
-        if (now * ratio / (1 - ratio) <= least_change * total(irradiance)) return i + 1;
+float Reflections::share_without(std::size_t reflections) const {
+    double all = 0, left = 0;
+    for (std::size_t i = 0; i < totals.size(); ++i) {
+        all += totals[i];
+        if (i + reflections <= limit) left += totals[i];
     }
-    return std::min<std::size_t>(bounces, most_iterations);
+    return all > 0 ? static_cast<float>(left / all) : 1;
+}
+
+Reflections iterate(const FieldLinks& links, const ElementLight& light, float share, std::uint32_t bounces,
+                    int threads, std::vector<Spectrum>& irradiance) {
+    // Without a limit all light arrives, however many reflections lobes take.
+    const bool limited = bounces < most_iterations;
+    const std::size_t count = light.straight.size(), delay = limited ? most_lobes(links) : 0;
+    std::vector<Spectrum> arriving = light.straight;
+    if (!limited) add(light.reflected, arriving);
+    irradiance = arriving;
+    Reflections done{{total(arriving)}, bounces};
+    Arrivals arrivals(count, delay + 1);
+    arrivals.add(arriving);
+    while (done.computed() < std::min<std::size_t>(bounces, most_iterations)) {
+        // Only the last bounce's light travels on: sums of ever smaller terms.
+        parallel_for(threads, (count + run - 1) / run, [&](std::size_t piece) {
+            for (std::size_t e = piece * run; e < std::min((piece + 1) * run, count); ++e)
+                arriving[e] = gathered(links, e, arrivals) * share;
+        });
+        if (limited && done.computed() == 0) add(light.reflected, arriving);
+        add(arriving, irradiance);
+        done.totals.push_back(total(arriving));
+        arrivals.add(arriving);
+        if (still_to_come(done.totals, delay + 1) <= least_change * total(irradiance)) break;
+    }
+    return done;
 }
 
 }  // namespace relumine

@@ -17,10 +17,13 @@ struct Link {
     std::uint16_t ray = 0;                      // of the element that it belongs to
     std::uint16_t direction = 0;                // that it arrives from, see pack_direction
     std::array<std::uint16_t, 3> throughput{};  // in units of 1 / 1024, rounded up or down by chance
+    std::uint8_t lobes = 0;                     // reflections along lobes on the way
 
     [[nodiscard]] Spectrum value() const;
 };
-[[nodiscard]] Link make_link(ElementId to, std::uint16_t ray, std::uint16_t direction, Spectrum throughput);
+static_assert(sizeof(Link) == 16);
+[[nodiscard]] Link make_link(ElementId to, std::uint16_t ray, std::uint16_t direction, Spectrum throughput,
+                             std::uint8_t lobes);
 
 /// A direction above the surface, in the frame around an element's normal, to within half a degree.
 [[nodiscard]] std::uint16_t pack_direction(LocalDir w);
@@ -37,10 +40,25 @@ struct FieldLinks {
     void end_element() { first.push_back(links.size()); }
 };
 
-/// Irradiance after `bounces` further reflections, or until it no longer changes (0.01 %). `share`: one over
-/// the rays of an element. `light`: what arrives straight from lights. Returns how many reflections were
-/// computed.
-std::size_t iterate(const FieldLinks& links, std::span<const Spectrum> light, float share,
-                    std::uint32_t bounces, int threads, std::vector<Spectrum>& irradiance);
+/// What arrives at elements from lights.
+struct ElementLight {
+    std::vector<Spectrum> straight;
+    std::vector<Spectrum> reflected;  // by a lobe, once for all that is known
+};
+
+/// How light has grown, reflection by reflection.
+struct Reflections {
+    std::vector<double> totals;  // of what arrives after none, one, … of them, over all elements
+    std::size_t limit = 0;
+
+    [[nodiscard]] std::size_t computed() const { return totals.size() - 1; }
+    /// Of all the irradiance, what a limit that is lower by so many would leave.
+    [[nodiscard]] float share_without(std::size_t reflections) const;
+};
+
+/// Irradiance after `bounces` further reflections, those of lobes on links' ways included, or until it no
+/// longer changes (0.01 %). `share`: one over the rays of an element.
+Reflections iterate(const FieldLinks& links, const ElementLight& light, float share, std::uint32_t bounces,
+                    int threads, std::vector<Spectrum>& irradiance);
 
 }  // namespace relumine

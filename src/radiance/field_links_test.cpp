@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "base/hash.hpp"
 
 namespace relumine {
@@ -12,10 +14,10 @@ namespace {
 constexpr int rays = 128;
 
 /// Two elements that see nothing but each other, of this albedo.
-FieldLinks facing(Spectrum albedo) {
+FieldLinks facing(Spectrum albedo, std::uint8_t lobes = 0) {
     FieldLinks links;
     for (ElementId e = 0; e < 2; ++e) {
-        for (std::uint16_t r = 0; r < rays; ++r) links.links.push_back(make_link(1 - e, r, r, albedo));
+        for (std::uint16_t r = 0; r < rays; ++r) links.links.push_back(make_link(1 - e, r, r, albedo, lobes));
         links.end_element();
     }
     return links;
@@ -26,7 +28,7 @@ TEST(FieldLinks, ReflectionsAddUpToTheGeometricSeries) {  // E = 1 / (1 − ρ),
         const FieldLinks links = facing(Spectrum{albedo});
         const std::vector<Spectrum> light(2, Spectrum{1});
         std::vector<Spectrum> irradiance;
-        iterate(links, light, 1.0f / rays, 0xffffffffu, 1, irradiance);
+        iterate(links, {light, {}}, 1.0f / rays, 0xffffffffu, 1, irradiance);
         for (const Spectrum& e : irradiance) EXPECT_NEAR(e.g * (1 - albedo), 1, 1e-3f) << albedo;
     }
 }
@@ -35,19 +37,42 @@ TEST(FieldLinks, AFewReflectionsAreItsPartialSum) {
     const FieldLinks links = facing(Spectrum{0.5f});
     const std::vector<Spectrum> light{Spectrum{1}, Spectrum{0}};
     std::vector<Spectrum> irradiance;
-    EXPECT_EQ(iterate(links, light, 1.0f / rays, 0, 1, irradiance), 0u);
+    EXPECT_EQ(iterate(links, {light, {}}, 1.0f / rays, 0, 1, irradiance).computed(), 0u);
     EXPECT_EQ(irradiance[1], Spectrum{0});
-    EXPECT_EQ(iterate(links, light, 1.0f / rays, 2, 1, irradiance), 2u);
+    EXPECT_EQ(iterate(links, {light, {}}, 1.0f / rays, 2, 1, irradiance).computed(), 2u);
     EXPECT_NEAR(irradiance[0].g, 1.25f, 1e-3f);
     EXPECT_NEAR(irradiance[1].g, 0.5f, 1e-3f);
+}
+
+/// Each way takes two lobes: three reflections. Light that a lobe has reflected comes after one.
+TEST(FieldLinks, LobesTakeReflectionsOfALimitedNumber) {
+    const FieldLinks links = facing(Spectrum{0.5f}, 2);
+    const ElementLight light{{Spectrum{1}, Spectrum{0}}, {Spectrum{0}, Spectrum{0.25f}}};
+    const auto after = [&](std::uint32_t bounces) {
+        std::vector<Spectrum> irradiance;
+        const Reflections done = iterate(links, light, 1.0f / rays, bounces, 1, irradiance);
+        return std::array{irradiance[0].g, irradiance[1].g, done.share_without(1)};
+    };
+    const auto expect = [&](std::uint32_t bounces, float first, float second, float share) {
+        const auto [a, b, without_one] = after(bounces);
+        EXPECT_NEAR(a, first, 1e-3f) << bounces;
+        EXPECT_NEAR(b, second, 1e-3f) << bounces;
+        EXPECT_NEAR(without_one, share, 1e-3f) << bounces;
+    };
+    expect(0, 1, 0, 0);
+    expect(1, 1, 0.25f, 0.8f);
+    expect(2, 1, 0.25f, 1);
+    expect(3, 1, 0.75f, 1.25f / 1.75f);
+    expect(4, 1.125f, 0.75f, 1.75f / 1.875f);
+    expect(0xffffffffu, 1.5f, 1, 1);
 }
 
 TEST(FieldLinks, ThreadsDoNotMatter) {
     const FieldLinks links = facing({0.9f, 0.5f, 0.1f});
     const std::vector<Spectrum> light{Spectrum{1}, Spectrum{3}};
     std::vector<Spectrum> one, seven;
-    iterate(links, light, 1.0f / rays, 50, 1, one);
-    iterate(links, light, 1.0f / rays, 50, 7, seven);
+    iterate(links, {light, {}}, 1.0f / rays, 50, 1, one);
+    iterate(links, {light, {}}, 1.0f / rays, 50, 7, seven);
     EXPECT_EQ(one, seven);
 }
 
@@ -56,7 +81,7 @@ TEST(FieldLinks, RoundingIsFairOnAverage) {
         double sum = 0;
         constexpr int count = 20'000;
         for (int i = 0; i < count; ++i)
-            sum += double{make_link(static_cast<ElementId>(i), 3, 5, Spectrum{value}).value().r};
+            sum += double{make_link(static_cast<ElementId>(i), 3, 5, Spectrum{value}, 0).value().r};
         EXPECT_NEAR(sum / count, value, 3e-5);
     }
 }

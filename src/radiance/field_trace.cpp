@@ -43,6 +43,9 @@ std::vector<PathState> paths_of(const Transport& t, const ElementRays& all) {
     return paths;
 }
 
+/// Of a path of paths_of that has come to a diffuse surface.
+std::uint8_t lobes_before(const PathState& path) { return static_cast<std::uint8_t>(path.depth - 1); }
+
 class ElementTracer {
   public:
     ElementTracer(const Transport& t, Vec3 normal, std::span<const StartPoint> points, int count,
@@ -54,14 +57,15 @@ class ElementTracer {
         for (std::size_t i = 0; i < all.size(); ++i) add_emission(all, i, paths[i]);
         std::vector<Spectrum> found(all.size());
         view_.landings.reserve(all.size() + all.size() / 4);
-        walk_lobes(t_, paths, lobe_walk(settings_), all.streams, found, counts,
-                   [&](std::size_t i, const DiffuseVertex& at) {
-                       const SurfacePoint& p = at.vertex.point;
-                       view_.landings.push_back({p.position, p.geometric_normal, p.offset, all.hits[i].t,
-                                                 at.weight, direction(all, i),
-                                                 static_cast<std::uint16_t>(all.streams[i].index)});
-                       return true;
-                   });
+        walk_lobes(
+            t_, paths, lobe_walk(settings_), all.streams, found, counts,
+            [&](std::size_t i, const DiffuseVertex& at) {
+                const SurfacePoint& p = at.vertex.point;
+                view_.landings.push_back({p.position, p.geometric_normal, p.offset, all.hits[i].t, at.weight,
+                                          direction(all, i), static_cast<std::uint16_t>(all.streams[i].index),
+                                          lobes_before(paths[i])});
+                return true;
+            });
         for (std::size_t i = 0; i < found.size(); ++i)
             if (!is_black(found[i]) && is_finite(found[i])) add_found(direction(all, i), found[i]);
         return std::move(view_);
@@ -87,7 +91,7 @@ class ElementTracer {
     }
 
     void add_found(Vec3 from, Spectrum found) {
-        add_arriving(view_.light, normal_, from, found * share());
+        add_arriving(view_.reflected, normal_, from, found * share());
         view_.finds.push_back(luminance(found));
         if (luminance(found) <= strongest_) return;
         strongest_ = luminance(found);
@@ -169,14 +173,14 @@ class Guide {
         std::vector<Spectrum> found(paths.size());  // the rays of trace_element bring that
         walk_lobes(t_, paths, lobe_walk(settings_), rays_.streams, found, counts,
                    [&](std::size_t i, const DiffuseVertex& at) {
-                       land(i, at);
+                       land(i, at, lobes_before(paths[i]));
                        return true;
                    });
     }
 
     /// A ray of either kind brings L · cos θ / (n p_cos + m p_guide); landings count it in units of L · π /
     /// n.
-    void land(std::size_t i, const DiffuseVertex& at) {
+    void land(std::size_t i, const DiffuseVertex& at, std::uint8_t lobes) {
         const Ray& ray = rays_.rays[i];
         const auto drawn = static_cast<int>(rays_.streams[i].index);
         const std::size_t p = point_of(points_, drawn, settings_.guided_rays);
@@ -184,7 +188,7 @@ class Guide {
         view_.landings.push_back({s.position, s.geometric_normal, s.offset, rays_.hits[i].t,
                                   at.weight * share(p, ray.direction),
                                   turned(ray.direction.v, points_[p].normal, normal_),
-                                  static_cast<std::uint16_t>(settings_.rays + drawn)});
+                                  static_cast<std::uint16_t>(settings_.rays + drawn), lobes});
     }
 
     const Transport& t_;

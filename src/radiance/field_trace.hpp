@@ -15,14 +15,16 @@ struct Landing {
     Spectrum throughput;  // from the irradiance there, over π, to the radiance of the ray
     Vec3 direction;  // unit: of the ray, turned as the surface where it starts is turned from the element
     std::uint16_t ray = 0;
+    std::uint8_t lobes = 0;  // that the ray was reflected along on its way
 };
 
 /// What an element's rays have found.
 struct ElementView {
     std::vector<Landing> landings;
     std::vector<Sight> sky;      // where the settings want arrivals
-    IrradianceVector light;      // what arrives straight from lights, less light samples, or through lobes
-    IrradianceVector strongest;  // part of it: the most that a single ray found along lobes
+    IrradianceVector light;      // what arrives straight from lights, less light samples
+    IrradianceVector reflected;  // of lights, along lobes
+    IrradianceVector strongest;  // part of it: the most that a single ray found
     std::vector<float> finds;    // luminance that rays found along lobes, where that is any
 };
 

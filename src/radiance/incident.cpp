@@ -21,18 +21,24 @@ Spectrum emission_met(const Transport& t, PathState path, const SampleStream& st
     return path.throughput * arriving_emission(t, path, &y.point);
 }
 
+constexpr std::uint32_t first_depth = 1;  // of what the camera's gather rays meet: the field's own
+
 /// What the surfaces at the paths' hits reflect: the field's light by diffuse surfaces, found along lobes.
 void add_reflected_field(const IncidentRadiance& source, PathPacket& paths, std::uint32_t limit,
                          const StreamPacket& streams, RadiancePacket& sums, RayCounts& counts) {
     std::array<Spectrum, packet_size> known, found;
-    walk_lobes(source.transport, paths, {limit}, streams, found, counts,
-               [&](std::size_t i, const DiffuseVertex& at) {
-                   const SurfacePoint& p = at.vertex.point;
-                   const auto irradiance =
-                       source.field->irradiance(p.position, p.geometric_normal, p.frame.n);
-                   if (irradiance) known[i] += at.weight * *irradiance * inv_pi;
-                   return irradiance.has_value();
-               });
+    walk_lobes(
+        source.transport, paths, {limit}, streams, found, counts,
+        [&](std::size_t i, const DiffuseVertex& at) {
+            const SurfacePoint& p = at.vertex.point;
+            const auto irradiance = source.field->irradiance(p.position, p.geometric_normal, p.frame.n);
+            if (irradiance)
+                known[i] +=
+                    at.weight * *irradiance
+                    * (inv_pi
+                       * source.field->share_after(paths[i].depth - std::min(paths[i].depth, first_depth)));
+            return irradiance.has_value();
+        });
     // One ray of a map stands for many: a rare find would be seen as a dot.
     const float most = source.field->most_found();
     for (std::size_t i = 0; i < packet_size; ++i) {

@@ -18,6 +18,10 @@ RadianceField::RadianceField(const Transport& t, BuiltField built, int threads, 
       most_found_(built.most_found),
       cells_(std::move(built.cells)),
       neighbors_(t, cells_, threads, rays) {
+    for (std::size_t i = 1; i <= built.reflections.limit && built.reflections.share_without(1) < 1; ++i) {
+        shares_.push_back(built.reflections.share_without(i));
+        if (shares_.back() == 0) break;
+    }
     neighbors_.smooth(built.noisy, threads, cells_);
     figures_.bytes = cells_.bytes() + neighbors_.bytes() + arrivals_.size() * sizeof(ElementArrivals);
 }

@@ -71,6 +71,13 @@ class RadianceField {
     [[nodiscard]] PlacedArrivals arrivals(Vec3 position, Vec3 geometric_normal) const;
     /// Of all that is reflected, over the elements' area; luminance, W·sr⁻¹·m⁻².
     [[nodiscard]] float mean_radiance() const { return mean_radiance_; }
+    /// Of irradiance(), what is left of it after so many reflections more than the first gather rays have
+    /// behind them, in the mean: where the number of reflections is limited.
+    [[nodiscard]] float share_after(std::uint32_t reflections) const {
+        return reflections == 0 || shares_.empty()
+                   ? 1
+                   : shares_[std::min<std::size_t>(reflections, shares_.size()) - 1];
+    }
     /// What a ray finds along lobes counts for no more than this; luminance, W·sr⁻¹·m⁻².
     [[nodiscard]] float most_found() const { return most_found_; }
 
@@ -83,6 +90,7 @@ class RadianceField {
     FieldFigures figures_;
     BrightCones cones_;
     std::vector<ElementArrivals> arrivals_;  // by element
+    std::vector<float> shares_;              // after one, two, … reflections; empty: always 1
     float mean_radiance_ = 0;
     float most_found_ = 0;
     FieldCells cells_;
