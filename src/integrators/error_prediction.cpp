@@ -59,6 +59,7 @@ float deviation_left(const PixelDoubt& doubt) {
 NoiseVariances noise_variances(const FilterImage& guides, std::span<const PixelDoubt> doubts,
                                NoiseEstimate PixelDoubt::*kind, int threads) {
     FilterParts around(2);  // noise, and its squares
+    for (auto& part : around) part.reserve(doubts.size());
     for (const PixelDoubt& d : doubts) {
         const float scale = d.albedo > least_albedo ? 1 / sqr(d.albedo) : 0;
         const NoiseEstimate& noise = d.*kind;

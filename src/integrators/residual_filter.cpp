@@ -225,7 +225,9 @@ class Smoothing {
         : guides_(std::move(guides)), threads_(threads), parts_(parts.size()) {
         weights_.values = std::exchange(guides_.weights, {});
         const bool weighed = !weights_.values.empty();
+        noise_weights_.values.reserve(weights_.values.size());
         for (const Spectrum& w : weights_.values) noise_weights_.values.emplace_back(luminance(w));
+        noise_.values.reserve(variances.expected.size());
         for (std::size_t i = 0; i < variances.expected.size(); ++i)
             noise_.values.emplace_back(variances.expected[i], variances.cautious[i], 0.0f);
         noise_.kind = Layer::Kind::variances;
@@ -264,6 +266,7 @@ class Smoothing {
     /// The luminance of the details together, squared, and averaged over a pixel's surroundings.
     [[nodiscard]] std::vector<Spectrum> energy() const {
         FilterParts squares(1);
+        squares[0].reserve(guides_.guides.size());
         for (std::size_t i = 0; i < guides_.guides.size(); ++i) {
             Spectrum sum;
             for (const Layer& part : parts_) sum += part.before[i];
