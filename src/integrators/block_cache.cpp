@@ -172,7 +172,7 @@ class BlockCache final : public Integrator {
         const GBufferPixel& pixel = *sample.pixel;
         SplitRadiance radiance{pixel.emission, {}, {}};
         Spectrum throughput;
-        SampledRadiance found;
+        SampledRadiance found, lobes;
         if (pixel.point) {
             SplitRadiance reflected = sample.reflected;
             if (!pixel.reflects_alone) reflected = monte_carlo_.reflected(*pixel.point, pixel.stream, rays);
@@ -181,23 +181,29 @@ class BlockCache final : public Integrator {
                 caustic_light(transport_, pixel.point->vertex, pixel.point->path.depth, max_depth_);
             throughput = pixel.point->path.throughput;
             found = finite_or_nothing(sample.sampled, rays);
+            if (sample.lobes) lobes = finite_or_nothing(*sample.lobes, rays);
             radiance.direct = throughput * reflected.direct;
             radiance.indirect = throughput * reflected.indirect;
         }
         if (found_.estimates_noise())
-            doubt.add(found, throughput, radiance.total(), sample.albedo, sample.deviation);
-        if (plan_.filters && !sample.lobe_by_rays) {  // what such a lobe shows is as fine as pixels
+            doubt.add(found, lobes, throughput, radiance.total(), sample.albedo, sample.deviation);
+        add(lobes, throughput, radiance);  // what sharp lobes show is as fine as pixels: no filter
+        if (plan_.filters) {
             residual.bright += throughput * (found.bright + found.light.radiance);
             residual.direct += throughput * found.residual.direct;
             residual.indirect += throughput * found.residual.indirect;
             residual.albedo += throughput * sample.albedo;
         } else {
-            radiance.direct += throughput * (found.residual.direct + found.bright + found.light.radiance);
-            radiance.indirect += throughput * found.residual.indirect;
+            add(found, throughput, radiance);
         }
         CacheFigures figures;
         figures.records = sample.maps;
         sums.add(sums.rect.x0, sums.rect.y0, pixel.stream.index, radiance, pixel.surface, figures);
+    }
+
+    static void add(const SampledRadiance& found, Spectrum throughput, SplitRadiance& radiance) {
+        radiance.direct += throughput * (found.residual.direct + found.bright + found.light.radiance);
+        radiance.indirect += throughput * found.residual.indirect;
     }
 
     /// What is not finite must not spread in the filter.

@@ -13,6 +13,9 @@ constexpr float light_power = 1.3f;
 
 constexpr float most_rays = 4096;  // of a kind, per pixel
 
+/// The integral does not resolve lobes that are sharper: 2 α radians are less than three of its points.
+constexpr float unresolved_alpha = 0.02f;
+
 /// The nearest power of two; 0 below ½ of `least`.
 float power_of_two(float rays, float least) {
     if (!(rays >= least / 2)) return 0;
@@ -45,7 +48,7 @@ float RayDemand::more_light(float noise) const {
 
 CachePlan cache_plan(const RenderSettings& s) {
     constexpr float usual_error = 0.02f, usual_tolerance = 0.8f, usual_residual = 8, usual_light = 16,
-                    usual_rays_per_pixel = 12, usual_most_rays = 800;
+                    usual_rays_per_pixel = 12, usual_most_rays = 800, usual_lobe_rays = 16;
     constexpr std::size_t usual_reprojected = 32;
     const float finer = usual_error / s.error, pixel_samples = static_cast<float>(s.samples_per_pixel);
     const auto chosen = [&](int wanted, float usual) {
@@ -57,11 +60,13 @@ CachePlan cache_plan(const RenderSettings& s) {
     plan.rays = {chosen(s.residual_rays, usual_residual), chosen(s.light_samples, usual_light)};
     plan.demand = ray_demand(s);
     plan.pixel_samples = pixel_samples;
+    plan.lobe_rays = std::max(1.0f, std::ceil(usual_lobe_rays * finer) / pixel_samples);
     plan.blocks.most_rays = usual_most_rays * std::max(finer, 1.0f);
     plan.reprojected = usual_reprojected;
     plan.exact = s.unbiased;
     plan.filters = s.filter_residual && !s.unbiased && plan.rays.residual + plan.rays.light > 0;
     if (s.unbiased && plan.rays.residual == 0) plan.rays.residual = 1;
+    if (plan.rays.residual > 0) plan.sharp_alpha = unresolved_alpha;
     return plan;
 }
 
@@ -70,7 +75,7 @@ CachePlan block_gather_plan(const RenderSettings& s) {
     plan.blocks.largest = plan.blocks.smallest = 8;
     plan.blocks.rays_per_pixel *= 2;  // of its own, since there are no others
     plan.blocks.most_rays = BlockSettings{}.most_rays;
-    plan.rays.residual = 0;
+    plan.rays.residual = plan.sharp_alpha = 0;
     plan.demand.residual_adapts = plan.demand.light_adapts = false;
     plan.reprojected = 0;
     plan.exact = plan.filters = false;

@@ -27,6 +27,8 @@ struct CachePlan {
     RayBudget rays;  // what is usual, or what was asked for
     RayDemand demand;
     float pixel_samples = 1;
+    float sharp_alpha = 0;        // lobes below it are none of the maps' and left to rays of their own,
+    float lobe_rays = 1;          // of which a camera sample has so many
     std::size_t reprojected = 0;  // records around that a map is filled with, beside its own
     bool exact = false, filters = false;
 };

@@ -16,9 +16,6 @@ constexpr float quad_shares = 16;
 /// Lobes that are sharper get at least so many residual rays per pixel, and draw so many of them.
 constexpr float sharp_alpha = 0.15f, sharp_rays = 8, sharp_bsdf_share = 0.5f;
 
-/// The integral does not resolve lobes that are sharper: 2 α radians are less than three of its points.
-constexpr float unresolved_alpha = 0.02f;
-
 /// √ of the samples of this pass over all of the picture's: the whole errs less than a pass by as much.
 float pass_share(std::size_t samples, float all) {
     return std::sqrt(std::min(1.0f, static_cast<float>(samples) / all));
@@ -68,15 +65,29 @@ class CellLight {
   private:
     void add_pilot(LitSample& sample) {
         const ShadingPoint& point = *sample.pixel->point;
-        const SampleStream& stream = sample.pixel->stream;
         sample.delta = delta_light(source_.transport, point.vertex,
-                                   stream.bits(Dim::opacity, 2 * point.path.depth + 1), rays_);
+                                   sample.pixel->stream.bits(Dim::opacity, 2 * point.path.depth + 1), rays_);
         if (!sample.pixel->reflects_alone) return;
+        const auto lobes = sharp_lobes(point.vertex.bsdf, plan_.sharp_alpha);
+        if (!lobes) {
+            add_first_light(point, sample);
+            return;
+        }
+        sample.lobes = &cell_.lobes.emplace_back();
+        add_first_light(without(*lobes, point), sample);
+    }
+
+    /// `point`: the sample's, as maps know it.
+    void add_first_light(const ShadingPoint& point, LitSample& sample) {
         sample.bsdf = *receiver_bsdf(point.vertex, map_frame);
-        leave_lobe_to_rays(sample);
         const RayDemand& demand = plan_.demand;
         const float rays = demand.light_adapts ? demand.pilot / plan_.pixel_samples : plan_.rays.light;
-        estimator_.add_light(point, stream, rays, LightSeries::first, sample.sampled.light);
+        estimator_.add_light(point, sample.pixel->stream, rays, LightSeries::first, sample.sampled.light);
+    }
+
+    static ShadingPoint without(const SharpLobes& lobes, ShadingPoint point) {
+        point.vertex.bsdf = lobes.rest;
+        return point;
     }
 
     /// Samples of a pixel that see the same surface alike share an integral, and so do those of the quad's
@@ -86,6 +97,11 @@ class CellLight {
             for (int x = quad.x0; x < quad.x1; ++x)
                 for (LitSample& first : cell_.at(x, y)) {
                     if (!waits(first)) continue;
+                    if (has_nothing_but_lobes(first)) {
+                        first.done = true;
+                        light_lobes(first);
+                        continue;
+                    }
                     const Blend blend = blend_maps(first.pixel->cache, maps_);
                     if (blend.empty()) {
                         gather(first);
@@ -101,6 +117,7 @@ class CellLight {
     void gather(LitSample& sample) {
         sample.reflected = source_.monte_carlo.reflected(*sample.pixel->point, sample.pixel->stream, rays_);
         sample.sampled = {};
+        sample.lobes = nullptr;
         sample.done = true;
         ++counts_.gathered;
     }
@@ -121,7 +138,7 @@ class CellLight {
     void light_own(int x, int y) {
         const LitSample& first = shared_.first();
         light_those(x, y, 1, [&](const LitSample& sample) {
-            return &sample == &first || shares_integral(first, sample, exact(first));
+            return &sample == &first || shares_integral(first, sample, plan_.exact);
         });
     }
 
@@ -129,7 +146,7 @@ class CellLight {
     void light_other(int x, int y) {
         const LitSample& first = shared_.first();
         const auto alike = [&](const LitSample& sample) {
-            return shares_integral(first, sample, exact(first)) && seen_alike(first, sample);
+            return shares_integral(first, sample, plan_.exact) && seen_alike(first, sample);
         };
         for (const LitSample& sample : cell_.at(x, y)) {
             if (!waits(sample) || !alike(sample)) continue;
@@ -156,23 +173,49 @@ class CellLight {
         sample.done = true;
         ++counts_.points;
         const Spectrum scale = shared_.give(level, sample);
-        if (sample.lobe_by_rays) sample.albedo += sample.bsdf.specular_f0;
         const ShadingPoint& point = *sample.pixel->point;
+        if (!sample.lobes) {
+            add_rays(point, sample, scale, level, budget);
+            return;
+        }
+        const SharpLobes lobes = *sharp_lobes(point.vertex.bsdf, plan_.sharp_alpha);
+        add_rays(without(lobes, point), sample, scale, level, budget);
+        add_lobes(lobes, sample);
+    }
+
+    /// `point`: the sample's, without sharp lobes; `scale`, `level`: of its integral and radiance, against
+    /// those shared.
+    void add_rays(const ShadingPoint& point, LitSample& sample, Spectrum scale, float level,
+                  const RayBudget& budget) {
         const SampleStream& stream = sample.pixel->stream;
         estimator_.add(
             {point, stream, shared_.integral(), shared_.distribution(), scale, level, budget.residual,
-             meets_lights(sample) ? sharp_bsdf_share : usual_bsdf_share, exact(sample)},
+             meets_lights(sample) ? sharp_bsdf_share : usual_bsdf_share, plan_.exact},
             sample.sampled);
         estimator_.add_light(point, stream, budget.light, LightSeries::second, sample.more_light);
+    }
+
+    static bool has_nothing_but_lobes(const LitSample& sample) {
+        return sample.lobes && !has_layers(sample.bsdf) && is_black(sample.bsdf.diffuse);
+    }
+
+    void light_lobes(LitSample& sample) {
+        const StepTimer timer(counts_, CacheStep::product);
+        ++counts_.points;
+        add_lobes(*sharp_lobes(sample.pixel->point->vertex.bsdf, plan_.sharp_alpha), sample);
+    }
+
+    void add_lobes(const SharpLobes& lobes, LitSample& sample) {
+        estimator_.add_lobes({*sample.pixel->point, sample.pixel->stream, lobes, plan_.lobe_rays},
+                             *sample.lobes);
     }
 
     /// As many rays as the expected error of the sample's pixel asks for. Nothing that they are to find may
     /// count.
     [[nodiscard]] RayBudget budget_of(const LitSample& sample, const ExpectedLight& bright) const {
         const RayDemand& demand = plan_.demand;
-        const float sharp = !demand.residual_adapts || !meets_lights(sample) ? 0.0f
-                            : sample.lobe_by_rays                            ? 1.0f
-                                                  : sharp_rays / plan_.pixel_samples;
+        const float sharp =
+            demand.residual_adapts && meets_lights(sample) ? sharp_rays / plan_.pixel_samples : 0.0f;
         const MapRadiance held = shared_.integral().reflected();
         const float throughput = luminance(sample.pixel->point->path.throughput);
         const float shines = luminance(sample.pixel->emission)
@@ -190,22 +233,10 @@ class CellLight {
         return budget;
     }
 
-    /// Whether the integral that stands for the sample is that of its integrand.
-    [[nodiscard]] bool exact(const LitSample& sample) const { return plan_.exact || sample.lobe_by_rays; }
-
     /// Whether bright light may be left to rays that the BSDF draws: lobes so sharp are not worth light
     /// samples, and nothing else asks for rays where one is filled by a lamp.
     [[nodiscard]] bool meets_lights(const LitSample& sample) const {
-        if (sample.lobe_by_rays) return true;
         return sample.bsdf.specular && sample.bsdf.ggx.alpha < sharp_alpha && !source_.residual.split.empty();
-    }
-
-    /// A lobe that is too sharp for the maps' texels is none of theirs.
-    void leave_lobe_to_rays(LitSample& sample) const {
-        if (plan_.rays.residual <= 0 || !sample.bsdf.specular || sample.bsdf.ggx.alpha >= unresolved_alpha)
-            return;
-        sample.bsdf.specular = false;
-        sample.lobe_by_rays = true;
     }
 
     const CellLightSource& source_;
@@ -220,7 +251,7 @@ class CellLight {
 
 LitCell dark_cell(const CellRow& row, const PixelRect& rect) {
     const auto pixels = static_cast<std::size_t>(rect.width()) * static_cast<std::size_t>(rect.height());
-    LitCell cell{rect, row.samples.size(), {}, std::vector<PilotLight>(pixels)};
+    LitCell cell{rect, row.samples.size(), {}, std::vector<PilotLight>(pixels), {}};
     cell.samples.resize(pixels * cell.per_pixel);
     return cell;
 }

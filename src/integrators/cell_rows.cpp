@@ -8,13 +8,26 @@
 namespace relumine {
 namespace {
 
-std::vector<BlockPoint> points_of(const CellRow& row, const PixelRect& cell) {
+/// What maps are for at a pixel; empty where nothing is.
+std::optional<ReceiverBsdf> map_receiver(const GBufferPixel& pixel, float sharp_alpha) {
+    if (!pixel.reflects_alone) return {};
+    const auto lobes = sharp_lobes(pixel.point->vertex.bsdf, sharp_alpha);
+    if (!lobes) return receiver_bsdf(pixel.point->vertex, map_frame);
+    if (is_black(lobes->rest)) return {};
+    Vertex rest = pixel.point->vertex;
+    rest.bsdf = lobes->rest;
+    return receiver_bsdf(rest, map_frame);
+}
+
+std::vector<BlockPoint> points_of(const CellRow& row, const PixelRect& cell, float sharp_alpha) {
     std::vector<BlockPoint> points;
     for (const auto& samples : row.samples)
         for (int y = cell.y0; y < cell.y1; ++y)
-            for (int x = cell.x0; x < cell.x1; ++x)
-                if (const GBufferPixel& pixel = samples->at(x, y); pixel.reflects_alone)
-                    points.push_back({&pixel.cache, *receiver_bsdf(pixel.point->vertex, map_frame)});
+            for (int x = cell.x0; x < cell.x1; ++x) {
+                const GBufferPixel& pixel = samples->at(x, y);
+                if (const auto receiver = map_receiver(pixel, sharp_alpha))
+                    points.push_back({&pixel.cache, *receiver});
+            }
     return points;
 }
 
@@ -83,7 +96,8 @@ CellRow CellRows::traced(int y, Preparation& p) const {
         {
             const StepTimer timer(counts, CacheStep::create);
             const PixelRect cell = row.cell(i);
-            row.records[i] = make_records(source_.maps, cell, points_of(row, cell), blocks, rays);
+            row.records[i] =
+                make_records(source_.maps, cell, points_of(row, cell, plan_.sharp_alpha), blocks, rays);
         }
         for (const MapRecord& record : row.records[i]) counts.record_bytes += record.bytes();
         counts.records = row.records[i].size();

@@ -26,13 +26,16 @@ float sources_of(float mean, float mean_square, float variance_left) {
 
 }  // namespace
 
-void DoubtSum::add(const SampledRadiance& found, Spectrum throughput, Spectrum light, Spectrum albedo,
-                   float deviation) {
+void DoubtSum::add(const SampledRadiance& found, const SampledRadiance& lobes, Spectrum throughput,
+                   Spectrum light, Spectrum albedo, float deviation) {
     const float factor = luminance(throughput), l = luminance(light);
     residual_.add(found.residual_noise, factor);
     cone_.add(found.cone_noise, factor);
     light_.add(found.light.noise, factor);
     hit_.add(found.hit_noise, factor);
+    lobe_.add(lobes.residual_noise, factor);
+    lobe_light_.add(lobes.light.noise, factor);
+    lobe_hit_.add(lobes.hit_noise, factor);
     albedo_ += luminance(throughput * albedo);
     deviation_ += factor * deviation;
     samples_ += 1;
@@ -43,6 +46,8 @@ void DoubtSum::add(const SampledRadiance& found, Spectrum throughput, Spectrum l
 PixelDoubt DoubtSum::finish() const {
     PixelDoubt doubt{noise_of(residual_), noise_of(light_), albedo_, deviation_,
                      variance_of_samples(samples_, sum_, squares_)};
+    for (const RayNoise* noise : {&lobe_, &lobe_light_, &lobe_hit_})
+        doubt.unfiltered_variance += variance_of_sum(noise_of(*noise));
     doubt.residual.add(noise_of(cone_));
     doubt.residual.independent += sqr(unseen * deviation_) / std::max(residual_.rays, 1.0f);
     doubt.bright.add(noise_of(hit_));

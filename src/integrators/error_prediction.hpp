@@ -16,20 +16,20 @@ struct PixelDoubt {
     NoiseEstimate residual, bright;  // of what rays have found
     float albedo = 0;                // that this is divided by under the filter
     float deviation = 0;             // ΣMapIntegral::deviation(): what maps may be wrong by
-    float samples_variance = 0;      // of what the samples differ by
+    float unfiltered_variance = 0;   // of what the samples differ by, and of rays along sharp lobes
 };
 
 /// Gathers that, sample by sample.
 class DoubtSum {
   public:
-    /// `light`: all of the sample's but what rays have found, times `throughput`; `deviation`: of its
-    /// integral.
-    void add(const SampledRadiance& found, Spectrum throughput, Spectrum light, Spectrum albedo,
-             float deviation);
+    /// `found`, `lobes`: by rays for what the maps hold, and for sharp lobes; `light`: all of the sample's
+    /// but these, times `throughput`; `deviation`: of its integral.
+    void add(const SampledRadiance& found, const SampledRadiance& lobes, Spectrum throughput, Spectrum light,
+             Spectrum albedo, float deviation);
     [[nodiscard]] PixelDoubt finish() const;
 
   private:
-    RayNoise residual_, cone_, light_, hit_;
+    RayNoise residual_, cone_, light_, hit_, lobe_, lobe_light_, lobe_hit_;
     float albedo_ = 0, deviation_ = 0;
     float samples_ = 0, sum_ = 0, squares_ = 0;
 };

@@ -2,6 +2,8 @@
 // A camera sample on its way from maps to the film, and which samples of a pixel are alike.
 #pragma once
 
+#include <deque>
+
 #include "base/pixel_rect.hpp"
 #include "integrators/gbuffer.hpp"
 #include "integrators/light_pilot.hpp"
@@ -11,24 +13,25 @@ namespace relumine {
 
 struct LitSample {
     const GBufferPixel* pixel = nullptr;
-    ReceiverBsdf bsdf;  // world space; only where the pixel reflects alone; without a lobe left to rays
-    bool lobe_by_rays = false;
-    SplitRadiance reflected;  // of the maps' radiance
-    Spectrum delta;           // of lights without size
-    SampledRadiance sampled;  // what residual and shadow rays add
-    FoundLight more_light;    // of the second series, until it joins `sampled`
-    Spectrum albedo;          // directional
-    float deviation = 0;      // that the maps' light may be off by, luminance
-    float maps = 0;           // that were blended
-    bool done = false;        // has its integral
+    ReceiverBsdf bsdf;  // world space; only where the pixel reflects alone; without its sharp lobes
+    SampledRadiance* lobes = nullptr;  // what these reflect, of LitCell::lobes; null: there are none
+    SplitRadiance reflected;           // of the maps' radiance
+    Spectrum delta;                    // of lights without size
+    SampledRadiance sampled;           // what residual and shadow rays add
+    FoundLight more_light;             // of the second series, until it joins `sampled`
+    Spectrum albedo;                   // directional
+    float deviation = 0;               // that the maps' light may be off by, luminance
+    float maps = 0;                    // that were blended
+    bool done = false;                 // has its integral
 };
 
 /// The samples of a cell on their way.
 struct LitCell {
     PixelRect rect;
     std::size_t per_pixel;
-    std::vector<LitSample> samples;  // pixel by pixel, row-major
-    std::vector<PilotLight> pilots;  // by pixel
+    std::vector<LitSample> samples;     // pixel by pixel, row-major
+    std::vector<PilotLight> pilots;     // by pixel
+    std::deque<SampledRadiance> lobes;  // of those samples that have sharp ones
 
     [[nodiscard]] std::span<LitSample> at(int x, int y) {
         const int pixel = (y - rect.y0) * rect.width() + x - rect.x0;

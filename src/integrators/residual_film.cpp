@@ -83,7 +83,7 @@ void ResidualFilm::add_rows(std::span<PixelSums> pixels, int end, const Adding& 
         add_kind(rows, &PixelDoubt::bright, {{&PixelResidual::bright, &SplitRadiance::direct}}, how.threads);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const PixelDoubt& doubt = doubts_[first_added() + i];
-        rows[i].error.variance += doubt.samples_variance;
+        rows[i].error.variance += doubt.unfiltered_variance;
         if (!how.exact) rows[i].error.deviation += deviation_left(doubt);
     }
     next_row_ = end;

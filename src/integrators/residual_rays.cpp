@@ -19,7 +19,8 @@ namespace relumine {
 namespace {
 
 constexpr std::uint64_t residual_purpose = 0x7265736964, light_purpose = 0x6272696768,
-                        second_light_purpose = 0x6c69676874, cone_purpose = 0x636f6e65;
+                        second_light_purpose = 0x6c69676874, cone_purpose = 0x636f6e65,
+                        lobe_purpose = 0x6c6f6265, lobe_light_purpose = 0x6c6f62656c;
 
 float bsdf_share(const IntegratedPoint& point) { return point.distribution.empty() ? 1 : point.bsdf_share; }
 
@@ -39,12 +40,34 @@ RayRange ray_range(float rays, const SampleStream& sample, std::uint64_t purpose
 
 bool in_second_half(const SampleStream& stream) { return 2 * stream.index + 1 >= stream.count; }
 
-BsdfValue value_towards(const Vertex& vertex, WorldDir direction) {
+/// `value`: of the BSDF, or of a part of it.
+template <typename Value>
+BsdfValue value_towards(const Vertex& vertex, WorldDir direction, const Value& value) {
     const LocalDir w_in = vertex.point.frame.to_local(direction);
     if (!(cos_theta(w_in) > 0)) return {};
-    const BsdfValue bsdf = evaluate(vertex.bsdf, vertex.w_out, w_in);
+    const BsdfValue bsdf = value(w_in);
     // BSDF sampling also goes where the geometric surface is in the way.
     return sides_agree(vertex.point, direction) ? bsdf : BsdfValue{{}, bsdf.pdf};
+}
+BsdfValue value_towards(const Vertex& vertex, WorldDir direction) {
+    return value_towards(vertex, direction,
+                         [&](LocalDir w_in) { return evaluate(vertex.bsdf, vertex.w_out, w_in); });
+}
+BsdfValue value_towards(const LobePoint& point, WorldDir direction) {
+    const Vertex& vertex = point.x.vertex;
+    return value_towards(vertex, direction, [&](LocalDir w_in) {
+        return evaluate(point.lobes, vertex.bsdf, vertex.w_out, w_in);
+    });
+}
+
+/// A direction drawn from a BSDF.
+std::optional<WorldDir> draw_from(const Bsdf& bsdf, const ShadingPoint& x, const SampleStream& stream) {
+    const std::uint32_t depth = x.path.depth;
+    const BsdfRandom u{has_lobes(bsdf) ? stream.next1(Dim::lobe, depth) : 0.0f,
+                       stream.next2(Dim::direction, depth)};
+    const auto scattered = sample(bsdf, x.vertex.w_out, u);
+    if (!scattered) return {};
+    return x.vertex.point.frame.to_world(scattered->w_in);
 }
 
 template <typename Use>
@@ -113,26 +136,27 @@ float ResidualEstimator::usual_bsdf_rays() const { return usual_bsdf_share * set
 /// A direction from the deviations or from the BSDF.
 std::optional<ResidualEstimator::Drawn> ResidualEstimator::draw(const IntegratedPoint& point,
                                                                 const SampleStream& stream) {
-    const Vertex& vertex = point.x.vertex;
     const std::uint32_t depth = point.x.path.depth;
     if (stream.next1(Dim::light_choice, depth) >= bsdf_share(point)) {
         const ResidualSample s = point.distribution.sample(stream.next2(Dim::direction, depth));
         return Drawn{s.direction, s.texel, false};
     }
-    const BsdfRandom u{has_lobes(vertex.bsdf) ? stream.next1(Dim::lobe, depth) : 0.0f,
-                       stream.next2(Dim::direction, depth)};
-    const auto scattered = sample(vertex.bsdf, vertex.w_out, u);
-    if (!scattered) return {};
-    const WorldDir direction = vertex.point.frame.to_world(scattered->w_in);
-    return Drawn{direction, point.integral.grid().texel_at(direction), true};
+    const std::optional<WorldDir> direction = draw_from(point.x.vertex.bsdf, point.x, stream);
+    if (!direction) return {};
+    return Drawn{*direction, point.integral.grid().texel_at(*direction), true};
+}
+
+/// Rays of a packet are of one depth.
+void ResidualEstimator::wait_for(std::uint32_t depth) {
+    if (residual_count_ > 0 && depth != depth_) trace_residual();
+    depth_ = depth;
 }
 
 void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleStream& stream,
                                      SampledRadiance& sum) {
     const Vertex& vertex = point.x.vertex;
     const std::uint32_t depth = point.x.path.depth;
-    if (residual_count_ > 0 && depth != depth_) trace_residual();
-    depth_ = depth;
+    wait_for(depth);
     const std::optional<Drawn> drawn = draw(point, stream);
     if (!drawn) return;
     const BsdfValue bsdf = value_towards(vertex, drawn->direction);
@@ -216,18 +240,64 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
 
 void ResidualEstimator::add_light_sample(const ShadingPoint& x, const SampleStream& stream, float rays,
                                          FoundLight& sum) {
+    add_light_ray(
+        x, stream, {rays, light_budget_, usual_bsdf_rays()},
+        [&](WorldDir w_in) { return value_towards(x.vertex, w_in); }, sum);
+}
+
+template <typename Reflect>
+void ResidualEstimator::add_light_ray(const ShadingPoint& x, const SampleStream& stream,
+                                      const LightDensities& drawn, const Reflect& reflect, FoundLight& sum) {
     const Vertex& vertex = x.vertex;
     const std::uint32_t depth = x.path.depth;
     const auto light =
         settings_.split.lights().sample(vertex.point.position, stream.next2(Dim::light_point, depth));
     if (!light || !(light->pdf > 0)) return;
-    const BsdfValue bsdf = value_towards(vertex, light->w_in);
+    const BsdfValue bsdf = reflect(light->w_in);
     const Spectrum radiance = bsdf.value * light->radiance * settings_.split.share(*light);
     if (is_black(radiance)) return;
-    const float weight = mis_weight(light_budget_ * light->pdf, usual_bsdf_rays() * bsdf.pdf);
-    light_[light_count_] = {&sum, in_second_half(stream), radiance * (weight / (rays * light->pdf))};
+    const float weight = mis_weight(drawn.weighed * light->pdf, drawn.bsdf_rays * bsdf.pdf);
+    light_[light_count_] = {&sum, in_second_half(stream), radiance * (weight / (drawn.rays * light->pdf))};
     light_rays_[light_count_++] = shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1));
     if (light_count_ == packet_size) trace_light();
+}
+
+void ResidualEstimator::add_lobes(const LobePoint& point, SampledRadiance& sum) {
+    const float light_rays = settings_.budget.light > 0 && !settings_.split.empty() ? point.rays : 0;
+    for_each_ray(point.rays, point.stream, lobe_purpose, sum.residual_noise,
+                 [&](const SampleStream& stream) { add_lobe_ray(point, light_rays, stream, sum); });
+    sum.hit_noise.rays = sum.residual_noise.rays;
+    if (!(light_rays > 0)) return;
+    for_each_ray(light_rays, point.stream, lobe_light_purpose, sum.light.noise,
+                 [&](const SampleStream& stream) { add_lobe_light(point, stream, sum.light); });
+}
+
+void ResidualEstimator::add_lobe_ray(const LobePoint& point, float light_rays, const SampleStream& stream,
+                                     SampledRadiance& sum) {
+    const ShadingPoint& x = point.x;
+    wait_for(x.path.depth);
+    const std::optional<WorldDir> direction = draw_from(point.lobes.drawn, x, stream);
+    if (!direction) return;
+    const BsdfValue bsdf = value_towards(point, *direction);
+    const float density = point.rays * bsdf.pdf;
+    if (is_black(bsdf.value) || !(density > 0)) return;
+    const std::size_t lane = residual_count_++;
+    residual_[lane] = {&sum,       in_second_half(stream),
+                       0,          bsdf.value,
+                       {},  // nothing is held
+                       density,    density,
+                       density,    0,
+                       light_rays, true};
+    residual_streams_[lane] = stream;
+    residual_rays_[lane] = {ray_origin(x.vertex.point, *direction), *direction, infinity,
+                            stream.bits(Dim::opacity, 2 * x.path.depth + 2)};
+    if (residual_count_ == packet_size) trace_residual();
+}
+
+void ResidualEstimator::add_lobe_light(const LobePoint& point, const SampleStream& stream, FoundLight& sum) {
+    add_light_ray(
+        point.x, stream, {point.rays, point.rays, point.rays},
+        [&](WorldDir w_in) { return value_towards(point, w_in); }, sum);
 }
 
 void ResidualEstimator::trace_light() {

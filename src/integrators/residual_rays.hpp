@@ -7,6 +7,7 @@
 #include "integrators/ray_noise.hpp"
 #include "integrators/shading_point.hpp"
 #include "radiance/incident.hpp"
+#include "shading/sharp_lobes.hpp"
 
 namespace relumine {
 
@@ -61,6 +62,14 @@ struct IntegratedPoint {
                  // the environment's detail
 };
 
+/// A camera sample's sharp lobes, which no map holds.
+struct LobePoint {
+    const ShadingPoint& x;
+    const SampleStream& stream;
+    const SharpLobes& lobes;  // of its BSDF
+    float rays;               // that are drawn from them on average; as many go to bright light
+};
+
 /// Estimates the difference between the light that points reflect and their map integrals. With residual rays
 /// and exact integrals the estimates are unbiased, whatever the maps hold. Rays of several points are traced
 /// together.
@@ -75,6 +84,8 @@ class ResidualEstimator {
     /// The same of a point's light samples: `rays` on average.
     void add_light(const ShadingPoint& x, const SampleStream& stream, float rays, LightSeries series,
                    FoundLight& sum);
+    /// All that sharp lobes reflect, in the same way: nothing is held.
+    void add_lobes(const LobePoint& point, SampledRadiance& sum);
     void finish();
 
   private:
@@ -107,8 +118,22 @@ class ResidualEstimator {
         bool from_bsdf;
     };
 
+    /// How many rays could have found bright light.
+    struct LightDensities {
+        float rays;       // light samples per camera sample
+        float weighed;    // what weights take for it
+        float bsdf_rays;  // those drawn from the BSDF, likewise
+    };
+
     void add_residual(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
     void add_light_sample(const ShadingPoint& x, const SampleStream& stream, float rays, FoundLight& sum);
+    void add_lobe_ray(const LobePoint& point, float light_rays, const SampleStream& stream,
+                      SampledRadiance& sum);
+    void add_lobe_light(const LobePoint& point, const SampleStream& stream, FoundLight& sum);
+    template <typename Reflect>
+    void add_light_ray(const ShadingPoint& x, const SampleStream& stream, const LightDensities& drawn,
+                       const Reflect& reflect, FoundLight& sum);
+    void wait_for(std::uint32_t depth);
     void add_cone(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
     void see_cones(const ShadingPoint& x);
     [[nodiscard]] static std::optional<Drawn> draw(const IntegratedPoint& point, const SampleStream& stream);
