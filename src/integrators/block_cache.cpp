@@ -187,7 +187,9 @@ class BlockCache final : public Integrator {
         }
         if (found_.estimates_noise())
             doubt.add(found, lobes, throughput, radiance.total(), sample.albedo, sample.deviation);
-        add(lobes, throughput, radiance);  // what sharp lobes show is as fine as pixels: no filter
+        // What sharp lobes show is as fine as pixels, lamps in glossy ones too: no filter.
+        add(lobes, throughput, radiance);
+        radiance.direct += throughput * (found.mirrored + found.light.mirrored);
         if (plan_.filters) {
             residual.bright += throughput * (found.bright + found.light.radiance);
             residual.direct += throughput * found.residual.direct;
@@ -208,7 +210,8 @@ class BlockCache final : public Integrator {
 
     /// What is not finite must not spread in the filter.
     static SampledRadiance finite_or_nothing(const SampledRadiance& found, RayCounts& rays) {
-        if (is_finite(found.residual.direct + found.residual.indirect + found.bright + found.light.radiance))
+        if (is_finite(found.residual.direct + found.residual.indirect + found.bright + found.light.radiance
+                      + found.mirrored + found.light.mirrored))
             return found;
         ++rays.non_finite;
         return {};

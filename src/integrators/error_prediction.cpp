@@ -34,8 +34,10 @@ void DoubtSum::add(const SampledRadiance& found, const SampledRadiance& lobes, S
     light_.add(found.light.noise, factor);
     hit_.add(found.hit_noise, factor);
     lobe_.add(lobes.residual_noise, factor);
-    lobe_light_.add(lobes.light.noise, factor);
-    lobe_hit_.add(lobes.hit_noise, factor);
+    mirrored_light_.add(found.light.mirrored_noise, factor);
+    mirrored_light_.add(lobes.light.noise, factor);
+    mirrored_hit_.add(found.mirrored_noise, factor);
+    mirrored_hit_.add(lobes.hit_noise, factor);
     albedo_ += luminance(throughput * albedo);
     deviation_ += factor * deviation;
     samples_ += 1;
@@ -46,7 +48,7 @@ void DoubtSum::add(const SampledRadiance& found, const SampledRadiance& lobes, S
 PixelDoubt DoubtSum::finish() const {
     PixelDoubt doubt{noise_of(residual_), noise_of(light_), albedo_, deviation_,
                      variance_of_samples(samples_, sum_, squares_)};
-    for (const RayNoise* noise : {&lobe_, &lobe_light_, &lobe_hit_})
+    for (const RayNoise* noise : {&lobe_, &mirrored_light_, &mirrored_hit_})
         doubt.unfiltered_variance += variance_of_sum(noise_of(*noise));
     doubt.residual.add(noise_of(cone_));
     doubt.residual.independent += sqr(unseen * deviation_) / std::max(residual_.rays, 1.0f);

@@ -16,7 +16,8 @@ struct PixelDoubt {
     NoiseEstimate residual, bright;  // of what rays have found
     float albedo = 0;                // that this is divided by under the filter
     float deviation = 0;             // ΣMapIntegral::deviation(): what maps may be wrong by
-    float unfiltered_variance = 0;   // of what the samples differ by, and of rays along sharp lobes
+    float unfiltered_variance =
+        0;  // of what the samples differ by, of sharp lobes and of lamps in glossy ones
 };
 
 /// Gathers that, sample by sample.
@@ -29,7 +30,7 @@ class DoubtSum {
     [[nodiscard]] PixelDoubt finish() const;
 
   private:
-    RayNoise residual_, cone_, light_, hit_, lobe_, lobe_light_, lobe_hit_;
+    RayNoise residual_, cone_, light_, hit_, lobe_, mirrored_light_, mirrored_hit_;
     float albedo_ = 0, deviation_ = 0;
     float samples_ = 0, sum_ = 0, squares_ = 0;
 };

@@ -8,8 +8,8 @@ namespace relumine {
 
 void PilotLight::add(const FoundLight& found, float throughput) {
     samples += 1;
-    sum += throughput * luminance(found.radiance);
-    noise.add(found.noise, throughput);
+    sum += throughput * luminance(found.radiance + found.mirrored);
+    noise.add(together(found.noise, found.mirrored_noise), throughput);
 }
 
 ExpectedLight expected_light(std::span<const PilotLight> cell, int width, int x, int y) {

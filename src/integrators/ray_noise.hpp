@@ -26,6 +26,14 @@ struct RayNoise {
     }
 };
 
+/// Of what the same rays have found by two ways.
+[[nodiscard]] inline RayNoise together(const RayNoise& a, const RayNoise& b) {
+    RayNoise sum = a;
+    sum.add(b, 1);
+    sum.rays = a.rays;
+    return sum;
+}
+
 /// Two estimates of the variance of the sum, and how many rays they come from: averages over pixels mean
 /// more than those of one.
 struct NoiseEstimate {

@@ -16,6 +16,25 @@
 #include "shading/sampling.hpp"
 
 namespace relumine {
+
+/// The share of glossy lobes in a BSDF's value towards a direction, which must not be black.
+class Mirroring {
+  public:
+    explicit Mirroring(const Vertex& vertex)
+        : vertex_(vertex), lobes_(sharp_lobes(vertex.bsdf, glossy_alpha)) {}
+
+    [[nodiscard]] float share(WorldDir direction, Spectrum value) const {
+        if (!lobes_) return 0;
+        const LocalDir w_in = vertex_.point.frame.to_local(direction);
+        return std::clamp(1 - luminance(eval(lobes_->rest, vertex_.w_out, w_in)) / luminance(value), 0.0f,
+                          1.0f);
+    }
+
+  private:
+    const Vertex& vertex_;
+    std::optional<SharpLobes> lobes_;
+};
+
 namespace {
 
 constexpr std::uint64_t residual_purpose = 0x7265736964, light_purpose = 0x6272696768,
@@ -84,12 +103,17 @@ void for_each_ray(float rays, const SampleStream& stream, std::uint64_t purpose,
 void FoundLight::join(const FoundLight& other) {
     const float all = rays + other.rays;
     if (!(all > 0)) return;
-    radiance = radiance * (rays / all) + other.radiance * (other.rays / all);
-    RayNoise sum;
-    sum.add(noise, rays / all);
-    sum.add(other.noise, other.rays / all);
-    sum.rays = noise.rays + other.noise.rays;
-    noise = sum;
+    const float here = rays / all, there = other.rays / all;
+    radiance = radiance * here + other.radiance * there;
+    mirrored = mirrored * here + other.mirrored * there;
+    const auto joined = [&](const RayNoise& a, const RayNoise& b) {
+        RayNoise sum;
+        sum.add(a, here);
+        sum.add(b, there);
+        return sum;
+    };
+    noise = joined(noise, other.noise);
+    mirrored_noise = joined(mirrored_noise, other.mirrored_noise);
     rays = all;
 }
 
@@ -107,13 +131,15 @@ void ResidualEstimator::see_cones(const ShadingPoint& x) {
 
 void ResidualEstimator::add(const IntegratedPoint& point, SampledRadiance& sum) {
     see_cones(point.x);
-    if (point.rays > 0)
+    if (point.rays > 0) {
+        const Mirroring mirroring(point.x.vertex);
         for_each_ray(point.rays, point.stream, residual_purpose, sum.residual_noise,
-                     [&](const SampleStream& stream) { add_residual(point, stream, sum); });
+                     [&](const SampleStream& stream) { add_residual(point, mirroring, stream, sum); });
+    }
     if (cone_budget_ > 0)
         for_each_ray(cone_budget_, point.stream, cone_purpose, sum.cone_noise,
                      [&](const SampleStream& stream) { add_cone(point, stream, sum); });
-    sum.hit_noise.rays = sum.residual_noise.rays;
+    sum.hit_noise.rays = sum.mirrored_noise.rays = sum.residual_noise.rays;
 }
 
 void ResidualEstimator::add_light(const ShadingPoint& x, const SampleStream& stream, float rays,
@@ -121,8 +147,11 @@ void ResidualEstimator::add_light(const ShadingPoint& x, const SampleStream& str
     see_cones(x);
     if (!(light_budget_ > 0) || !(rays > 0)) return;
     sum.rays = rays * light_budget_ / settings_.budget.light;
+    const Mirroring mirroring(x.vertex);
     for_each_ray(sum.rays, stream, series == LightSeries::first ? light_purpose : second_light_purpose,
-                 sum.noise, [&](const SampleStream& drawn) { add_light_sample(x, drawn, sum.rays, sum); });
+                 sum.noise,
+                 [&](const SampleStream& drawn) { add_light_sample(x, mirroring, drawn, sum.rays, sum); });
+    sum.mirrored_noise.rays = sum.noise.rays;
 }
 
 void ResidualEstimator::finish() {
@@ -152,8 +181,8 @@ void ResidualEstimator::wait_for(std::uint32_t depth) {
     depth_ = depth;
 }
 
-void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleStream& stream,
-                                     SampledRadiance& sum) {
+void ResidualEstimator::add_residual(const IntegratedPoint& point, const Mirroring& mirroring,
+                                     const SampleStream& stream, SampledRadiance& sum) {
     const Vertex& vertex = point.x.vertex;
     const std::uint32_t depth = point.x.path.depth;
     wait_for(depth);
@@ -166,12 +195,14 @@ void ResidualEstimator::add_residual(const IntegratedPoint& point, const SampleS
     if (!(density > 0)) return;
     const Spectrum h = point.exact ? point.scale * point.integral.bsdf_at(drawn->texel) : bsdf.value;
     const MapRadiance held = point.integral.radiance_at(drawn->texel);
+    const bool meets_light = drawn->from_bsdf && !settings_.split.empty();
     const std::size_t lane = residual_count_++;
     residual_[lane] = {
         &sum,
         in_second_half(stream),
         drawn->texel,
         bsdf.value,
+        meets_light && !is_black(bsdf.value) ? mirroring.share(drawn->direction, bsdf.value) : 0,
         {h * held.direct * point.level, h * held.indirect * point.level},
         density,
         drawn->from_bsdf ? rays * share * bsdf.pdf : 0,
@@ -234,20 +265,25 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
         drawn.bsdf * found.direct
         * (bright.share * mis_weight(drawn.usual_bsdf_density, drawn.light_budget * bright.pdf)
            / drawn.bsdf_density);
-    sum.bright += shining;
-    sum.hit_noise.count(drawn.second_half, luminance(shining));
+    const Spectrum mirrored = shining * drawn.mirrors, rest = shining - mirrored;
+    sum.bright += rest;
+    sum.mirrored += mirrored;
+    sum.hit_noise.count(drawn.second_half, luminance(rest));
+    sum.mirrored_noise.count(drawn.second_half, luminance(mirrored));
 }
 
-void ResidualEstimator::add_light_sample(const ShadingPoint& x, const SampleStream& stream, float rays,
-                                         FoundLight& sum) {
+void ResidualEstimator::add_light_sample(const ShadingPoint& x, const Mirroring& mirroring,
+                                         const SampleStream& stream, float rays, FoundLight& sum) {
     add_light_ray(
         x, stream, {rays, light_budget_, usual_bsdf_rays()},
-        [&](WorldDir w_in) { return value_towards(x.vertex, w_in); }, sum);
+        [&](WorldDir w_in) { return value_towards(x.vertex, w_in); },
+        [&](WorldDir w_in, Spectrum value) { return mirroring.share(w_in, value); }, sum);
 }
 
-template <typename Reflect>
+template <typename Reflect, typename Mirrors>
 void ResidualEstimator::add_light_ray(const ShadingPoint& x, const SampleStream& stream,
-                                      const LightDensities& drawn, const Reflect& reflect, FoundLight& sum) {
+                                      const LightDensities& drawn, const Reflect& reflect,
+                                      const Mirrors& mirrors, FoundLight& sum) {
     const Vertex& vertex = x.vertex;
     const std::uint32_t depth = x.path.depth;
     const auto light =
@@ -257,7 +293,8 @@ void ResidualEstimator::add_light_ray(const ShadingPoint& x, const SampleStream&
     const Spectrum radiance = bsdf.value * light->radiance * settings_.split.share(*light);
     if (is_black(radiance)) return;
     const float weight = mis_weight(drawn.weighed * light->pdf, drawn.bsdf_rays * bsdf.pdf);
-    light_[light_count_] = {&sum, in_second_half(stream), radiance * (weight / (drawn.rays * light->pdf))};
+    light_[light_count_] = {&sum, in_second_half(stream), radiance * (weight / (drawn.rays * light->pdf)),
+                            mirrors(light->w_in, bsdf.value)};
     light_rays_[light_count_++] = shadow_ray(vertex.point, *light, stream.bits(Dim::opacity, 2 * depth + 1));
     if (light_count_ == packet_size) trace_light();
 }
@@ -284,7 +321,7 @@ void ResidualEstimator::add_lobe_ray(const LobePoint& point, float light_rays, c
     const std::size_t lane = residual_count_++;
     residual_[lane] = {&sum,       in_second_half(stream),
                        0,          bsdf.value,
-                       {},  // nothing is held
+                       0,          {},  // nothing is held
                        density,    density,
                        density,    0,
                        light_rays, true};
@@ -297,7 +334,9 @@ void ResidualEstimator::add_lobe_ray(const LobePoint& point, float light_rays, c
 void ResidualEstimator::add_lobe_light(const LobePoint& point, const SampleStream& stream, FoundLight& sum) {
     add_light_ray(
         point.x, stream, {point.rays, point.rays, point.rays},
-        [&](WorldDir w_in) { return value_towards(point, w_in); }, sum);
+        [&](WorldDir w_in) { return value_towards(point, w_in); },
+        [](WorldDir, Spectrum) { return 0.0f; },  // all of this is apart
+        sum);
 }
 
 void ResidualEstimator::trace_light() {
@@ -307,9 +346,13 @@ void ResidualEstimator::trace_light() {
     counts_.add(RayPurpose::shadow, light_count_);
     settings_.source.transport.tracer.passed_light(light_rays_, passed);
     for (std::size_t lane = 0; lane < light_count_; ++lane) {
-        const Spectrum found = light_[lane].reflected * passed[lane];
-        light_[lane].sum->radiance += found;
-        light_[lane].sum->noise.count(light_[lane].second_half, luminance(found));
+        const LightRay& ray = light_[lane];
+        const Spectrum found = ray.reflected * passed[lane], mirrored = found * ray.mirrors,
+                       rest = found - mirrored;
+        ray.sum->radiance += rest;
+        ray.sum->mirrored += mirrored;
+        ray.sum->noise.count(ray.second_half, luminance(rest));
+        ray.sum->mirrored_noise.count(ray.second_half, luminance(mirrored));
     }
     light_count_ = 0;
 }

@@ -18,8 +18,8 @@ struct RayBudget {
 
 /// What a series of light samples has found.
 struct FoundLight {
-    Spectrum radiance;  // reflected
-    RayNoise noise;
+    Spectrum radiance, mirrored;  // reflected by all but glossy lobes, and by these
+    RayNoise noise, mirrored_noise;
     float rays = 0;  // that the camera sample got on average
 
     /// Makes one of two series, weighed by their rays, which must not depend on what they have found.
@@ -30,10 +30,11 @@ enum class LightSeries : std::uint8_t { first, second };
 
 /// What is added to MapIntegral::reflected().
 struct SampledRadiance {
-    MapRadiance residual;                            // true dim radiance less what the maps hold
-    Spectrum bright;                                 // that residual rays have met
-    FoundLight light;                                // the rest of it
-    RayNoise residual_noise, cone_noise, hit_noise;  // of `residual`, by kind of ray; of `bright`
+    MapRadiance residual;                 // true dim radiance less what the maps hold
+    Spectrum bright, mirrored;            // bright light that residual rays have met, as in FoundLight
+    FoundLight light;                     // the rest of it
+    RayNoise residual_noise, cone_noise;  // of `residual`, by kind of ray
+    RayNoise hit_noise, mirrored_noise;   // of `bright` and `mirrored`
 };
 
 /// What residual rays are drawn and judged with.
@@ -43,6 +44,11 @@ struct ResidualSettings {
     const DimEnvironment& environment;
     RayBudget budget;  // what is usual: it divides bright light between light samples and other rays
 };
+
+/// Lobes of GGX α below it are glossy: lamps are seen in them, which no neighbour must share.
+inline constexpr float glossy_alpha = 0.15f;
+
+class Mirroring;
 
 /// Share of the residual rays that is drawn from the BSDF, so that no direction is left out.
 inline constexpr float usual_bsdf_share = 0.15f;
@@ -94,6 +100,7 @@ class ResidualEstimator {
         bool second_half = false;  // of its sequence
         std::uint32_t texel = 0;
         Spectrum bsdf;                 // f·|cos θ|; black where the surface is in the way
+        float mirrors = 0;             // share of it that is glossy lobes
         MapRadiance held;              // the integrand in the maps
         float density = 0;             // of residual rays, times how many there are
         float bsdf_density = 0;        // of those drawn from the BSDF, likewise; 0 if this is none of them
@@ -106,6 +113,7 @@ class ResidualEstimator {
         FoundLight* sum = nullptr;
         bool second_half = false;
         Spectrum reflected;  // where nothing is in the way
+        float mirrors = 0;   // share of it that is glossy lobes
     };
     struct ConeRay {
         SampledRadiance* sum = nullptr;
@@ -125,14 +133,16 @@ class ResidualEstimator {
         float bsdf_rays;  // those drawn from the BSDF, likewise
     };
 
-    void add_residual(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
-    void add_light_sample(const ShadingPoint& x, const SampleStream& stream, float rays, FoundLight& sum);
+    void add_residual(const IntegratedPoint& point, const Mirroring& mirroring, const SampleStream& stream,
+                      SampledRadiance& sum);
+    void add_light_sample(const ShadingPoint& x, const Mirroring& mirroring, const SampleStream& stream,
+                          float rays, FoundLight& sum);
     void add_lobe_ray(const LobePoint& point, float light_rays, const SampleStream& stream,
                       SampledRadiance& sum);
     void add_lobe_light(const LobePoint& point, const SampleStream& stream, FoundLight& sum);
-    template <typename Reflect>
+    template <typename Reflect, typename Mirrors>
     void add_light_ray(const ShadingPoint& x, const SampleStream& stream, const LightDensities& drawn,
-                       const Reflect& reflect, FoundLight& sum);
+                       const Reflect& reflect, const Mirrors& mirrors, FoundLight& sum);
     void wait_for(std::uint32_t depth);
     void add_cone(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
     void see_cones(const ShadingPoint& x);

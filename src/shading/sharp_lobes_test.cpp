@@ -46,9 +46,9 @@ std::vector<Split> with_sharp_lobes() {
 }
 
 TEST(SharpLobes, AreTakenFromWhatIsSharperThanTheLimit) {
-    for (const Bsdf& bsdf : std::vector<Bsdf>{Lambert{{0.7f, 0.5f, 0.2f}}, plastic(0.06f), lacquer(0.1f),
-                                              layers(0.1f, 0.2f), Mirror{Spectrum{0.9f}},
-                                              RoughDielectric{1.5f, Spectrum{1}, false, {0.02f}}})
+    for (const Bsdf& bsdf :
+         std::vector<Bsdf>{Lambert{{0.7f, 0.5f, 0.2f}}, plastic(0.06f), lacquer(0.1f), layers(0.1f, 0.2f),
+                           Mirror{Spectrum{0.9f}}, RoughDielectric{1.5f, Spectrum{1}, false, {0.02f}}})
         EXPECT_FALSE(sharp_lobes(bsdf, limit)) << bsdf.index();
     for (const auto& [name, bsdf] : with_sharp_lobes()) {
         EXPECT_TRUE(sharp_lobes(bsdf, limit)) << name;
@@ -104,8 +104,9 @@ TEST(SharpLobes, AreDrawnWhereTheyAre) {
                 heaviest = std::max(heaviest, value.value.r / value.pdf);
             }
             if (const auto drawn = sample(bsdf, w_out, u))
-                whole_less_rest += drawn->weight.r * (1 - eval(lobes.rest, w_out, drawn->w_in).r
-                                                              / eval(bsdf, w_out, drawn->w_in).r);
+                whole_less_rest +=
+                    drawn->weight.r
+                    * (1 - eval(lobes.rest, w_out, drawn->w_in).r / eval(bsdf, w_out, drawn->w_in).r);
         }
         EXPECT_NEAR(sum, whole_less_rest, 0.05 * whole_less_rest) << name;
         EXPECT_LT(heaviest, 3 * sum / draws) << name;
