@@ -10,6 +10,22 @@ namespace {
 /// What a texel's radiance may deviate by where it is known and where it is not, against the radiance.
 constexpr float known_deviation = 0.05f, unknown_deviation = 0.5f;
 
+/// What decides the tiers for a receiver. Of several lobes the sharpest does, which asks for no less than the
+/// others anywhere; sheen, whose crest lies along the horizon, for all texels.
+TierQuery tier_query(const ReceiverBsdf& b, Vec3 geometric_normal, bool exact) {
+    const Vec3 w_out = b.shading_x * b.w_out.v.x + b.shading_y * b.w_out.v.y + b.shading_z * b.w_out.v.z;
+    const float alpha = has_ggx_lobe(b) ? sharpest_alpha(b) : 0;
+    TierQuery query{geometric_normal, b.shading_z, w_out, alpha, exact || has_sheen_lobe(b), 0, 0, {}, {}};
+    if (is_anisotropic(b.ggx)) {
+        const float clearcoat = has_clearcoat_lobe(b) ? b.over.clearcoat_alpha : infinity;
+        query.alpha_x = std::min(alpha_x(b.ggx), clearcoat);
+        query.alpha_y = std::min(alpha_y(b.ggx), clearcoat);
+        query.axis_x = b.shading_x;
+        query.axis_y = b.shading_y;
+    }
+    return query;
+}
+
 }  // namespace
 
 MapIntegral::MapIntegral(const DirectionGrid& grid, const QuadraturePoints& points,
@@ -40,17 +56,8 @@ void MapIntegral::run(const Blend& blend, const ReceiverBsdf& bsdf, Vec3 geometr
     blend_ = blend;
     receiver_ = bsdf;
     normal_ = geometric_normal;
-    const Vec3 w_out =
-        bsdf.shading_x * bsdf.w_out.v.x + bsdf.shading_y * bsdf.w_out.v.y + bsdf.shading_z * bsdf.w_out.v.z;
     blend_tiles(blend_, {luminance_, variance_, known_});
-    TierQuery query{
-        geometric_normal, bsdf.shading_z, w_out, bsdf.specular ? bsdf.ggx.alpha : 0, exact_, 0, 0, {}, {}};
-    if (is_anisotropic(bsdf.ggx)) {
-        query.alpha_x = alpha_x(bsdf.ggx);
-        query.alpha_y = alpha_y(bsdf.ggx);
-        query.axis_x = bsdf.shading_x;
-        query.axis_y = bsdf.shading_y;
-    }
+    const TierQuery query = tier_query(bsdf, geometric_normal, exact_);
     evaluate_tiles();
     if (query.alpha > 0) find_lobe_shares();
     choose_tiers(grid_, query, {lobe_share_, luminance_, variance_, known_}, tiers_);
@@ -69,9 +76,8 @@ void MapIntegral::evaluate_tiles() {
 
 /// At the tiles' centres.
 void MapIntegral::find_lobe_shares() {
-    ReceiverBsdf matte = receiver_;
-    matte.specular = false;
-    evaluate(matte, {grid_.tile_x, grid_.tile_y, grid_.tile_z}, {matte_[0], matte_[1], matte_[2]});
+    evaluate(without_lobes(receiver_), {grid_.tile_x, grid_.tile_y, grid_.tile_z},
+             {matte_[0], matte_[1], matte_[2]});
     for (std::size_t tile = 0; tile < grid_.tiles; ++tile) {
         const float all = luminance({tile_bsdf_[0][tile], tile_bsdf_[1][tile], tile_bsdf_[2][tile]})
                           / grid_.tile_length[tile];

@@ -19,6 +19,22 @@ struct Lobes {
         bsdf.ggx = b.ggx;  // which the coat's share depends on
         if (!b.smooth) set_specular(b.specular_f0, b.specular_f90, b.ggx);
     }
+    void operator()(const CoatedDiffuse& b) {
+        bsdf.diffuse = b.base;
+        bsdf.over.eta = b.eta;
+        if (b.coated && !b.smooth) set_specular(Spectrum{1}, Spectrum{1}, b.ggx);
+    }
+    void operator()(const CoatedLayers& b) {
+        (*this)(b.base);
+        OverLayers& over = bsdf.over;
+        over.clearcoat = b.clearcoat;
+        over.clearcoat_lobe = b.clearcoat_reflects && !b.clearcoat_smooth ? b.clearcoat : 0;
+        over.clearcoat_alpha = b.clearcoat_ggx.alpha;
+        over.clearcoat_masking = b.clearcoat_ggx.masking;
+        over.sheen = max_component(b.sheen);
+        over.sheen_lobe = b.sheen;
+        over.sheen_alpha = b.sheen_alpha;
+    }
     void operator()(const auto&) { reflects_alone = false; }
 
     void set_specular(Spectrum f0, Spectrum f90, const Ggx& ggx) {

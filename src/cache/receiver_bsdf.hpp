@@ -12,18 +12,62 @@
 
 namespace relumine {
 
-/// A reflecting BSDF seen from one side, in numbers that a kernel evaluates: a diffuse base under a coat and
-/// one GGX lobe. Lambert, RoughConductor and MetallicRoughness are such; CoatedLayers and
-/// CoatedDiffuse are not and are gathered by Monte Carlo.
+/// What lies over a base. Each layer takes light from those below; whether it reflects any is another matter:
+/// a smooth one's reflection is none of the kernel's.
+struct OverLayers {
+    float clearcoat = 0, clearcoat_lobe = 0;  // strengths of what the clear coat takes, and reflects
+    float clearcoat_alpha = 1;                // GGX
+    Masking clearcoat_masking = Masking::correlated;
+    float sheen = 0;  // the largest channel of what takes
+    Spectrum sheen_lobe;
+    float sheen_alpha = 1;
+    float eta = 0;  // not 0: a dielectric in place of the base's coat, which the specular lobe is of
+};
+
+/// A reflecting BSDF seen from one side, in numbers that a kernel evaluates: a diffuse base under a coat, one
+/// GGX lobe, and what may lie over them. Lambert, RoughConductor, MetallicRoughness, CoatedLayers and
+/// CoatedDiffuse are such; BSDFs that transmit are not and are gathered by Monte Carlo.
 struct ReceiverBsdf {
     Spectrum diffuse;
     Spectrum coat_f0, coat_f90;
     Spectrum specular_f0, specular_f90;
     Ggx ggx;
     bool coated = false, specular = false;
+    OverLayers over;
     LocalDir w_out;                        // in the shading frame
     Vec3 shading_x, shading_y, shading_z;  // the shading frame's axes in the receiver's frame
 };
+
+/// Whether anything lies over the base.
+inline bool is_layered(const ReceiverBsdf& b) {
+    return b.over.clearcoat > 0 || b.over.sheen > 0 || b.over.eta > 0;
+}
+inline bool has_clearcoat_lobe(const ReceiverBsdf& b) { return b.over.clearcoat_lobe > 0; }
+inline bool has_sheen_lobe(const ReceiverBsdf& b) { return !is_black(b.over.sheen_lobe); }
+inline bool has_ggx_lobe(const ReceiverBsdf& b) { return b.specular || has_clearcoat_lobe(b); }
+inline bool has_lobes(const ReceiverBsdf& b) { return has_ggx_lobe(b) || has_sheen_lobe(b); }
+
+/// α of the sharpest GGX lobe; infinite if there is none.
+inline float sharpest_alpha(const ReceiverBsdf& b) {
+    return std::min(b.specular ? b.ggx.alpha : infinity,
+                    has_clearcoat_lobe(b) ? b.over.clearcoat_alpha : infinity);
+}
+
+/// The least width of any lobe along any axis, in α of GGX; infinite if there is none. That of sheen is by
+/// the curvature of sin^(1/α).
+inline float least_width(const ReceiverBsdf& b) {
+    return std::min({b.specular ? least_alpha(b.ggx) : infinity,
+                     has_clearcoat_lobe(b) ? b.over.clearcoat_alpha : infinity,
+                     has_sheen_lobe(b) ? std::sqrt(b.over.sheen_alpha) : infinity});
+}
+
+/// The diffuse part alone, with what lies over it.
+[[nodiscard]] inline ReceiverBsdf without_lobes(ReceiverBsdf b) {
+    b.specular = false;
+    b.over.clearcoat_lobe = 0;
+    b.over.sheen_lobe = {};
+    return b;
+}
 
 /// Empty for BSDFs that transmit: their light does not come from the receiver's hemisphere alone.
 [[nodiscard]] std::optional<ReceiverBsdf> receiver_bsdf(const Vertex& vertex, const Frame& receiver);

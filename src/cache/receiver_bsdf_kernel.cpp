@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The BSDF kernel: the formulas of shading/metallic_roughness.cpp for as many directions as the machine has
-// lanes.
+// The BSDF kernel: the formulas of shading/metallic_roughness.cpp, coated_layers.cpp and coated_diffuse.cpp
+// for as many directions as the machine has lanes.
 #include <array>
 
 #include "cache/receiver_bsdf.hpp"
+#include "shading/coat.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cache/receiver_bsdf_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+// Behind the first of these:
+#include <hwy/contrib/math/math-inl.h>
 
 #include "cache/cells-inl.hpp"
 
@@ -41,34 +44,60 @@ HWY_INLINE Spectrums schlick(Spectrum f0, Spectrum f90, VF grazing) {
     return {channel(f0.r, f90.r), channel(f0.g, f90.g), channel(f0.b, f90.b)};
 }
 
-/// What does not depend on w_in.
-struct Prepared {
-    const ReceiverBsdf& b;
-    float a2, lambda_out, scale;       // of the specular lobe: D·G without what follows from w_in
-    float squeeze_x, squeeze_y;        // of the axes in the density, against Λ's
-    std::array<float, 3> flat, steep;  // of grazing_albedo, for the mean α and both others
-    std::array<float, 3> inverse_steep;
-    Spectrum diffuse;  // times what the coat lets pass to w_out
+/// What BSDFs need of the formulas: one GGX lobe that is round, one of two roughnesses, or all there is.
+enum class Shape : std::uint8_t { round, stretched, layered };
 
-    explicit Prepared(const ReceiverBsdf& bsdf) : b(bsdf), a2(sqr(bsdf.ggx.alpha)) {
-        const Vec3 o = b.w_out.v;
-        lambda_out = 0.5f * (std::sqrt(1 + a2 * stretched2(b.ggx, b.w_out) / sqr(o.z)) - 1);
-        scale = a2 * inv_pi / (4 * o.z);
-        squeeze_x = b.ggx.stretch_y;
-        squeeze_y = b.ggx.stretch_x;
+Shape shape_of(const ReceiverBsdf& b) {
+    if (is_layered(b)) return Shape::layered;
+    return is_anisotropic(b.ggx) ? Shape::stretched : Shape::round;
+}
+
+/// What of a GGX lobe does not depend on w_in.
+struct PreparedLobe {
+    Ggx ggx;
+    float a2, lambda_out, scale;  // D·G without what follows from w_in
+
+    PreparedLobe(const Ggx& lobe, LocalDir w_out) : ggx(lobe), a2(sqr(lobe.alpha)) {
+        const float o = w_out.v.z;
+        lambda_out = 0.5f * (std::sqrt(1 + a2 * stretched2(ggx, w_out) / sqr(o)) - 1);
+        scale = a2 * inv_pi / (4 * o);
+    }
+};
+
+/// grazing_albedo() of one roughness.
+struct PreparedGrazing {
+    float flat = 0, steep = 1, inverse_steep = 1;
+
+    PreparedGrazing() = default;
+    explicit PreparedGrazing(float alpha)
+        : flat(std::max(1 - 6 * alpha, 0.0f)),
+          steep(20 * sqr(alpha) / (alpha + 0.02f)),
+          inverse_steep(1 / steep) {}
+};
+
+/// What does not depend on w_in.
+struct PreparedBase {
+    const ReceiverBsdf& b;
+    PreparedLobe specular;
+    std::array<PreparedGrazing, 3> coat;  // for the mean α and both others
+    Spectrum diffuse;                     // times what the coat lets pass to w_out
+
+    explicit PreparedBase(const ReceiverBsdf& bsdf) : b(bsdf), specular(bsdf.ggx, bsdf.w_out) {
         const std::array<float, 3> alphas = grazing_alphas(b.ggx);
-        for (std::size_t i = 0; i < alphas.size(); ++i) {
-            flat[i] = std::max(1 - 6 * alphas[i], 0.0f);
-            steep[i] = 20 * sqr(alphas[i]) / (alphas[i] + 0.02f);
-            inverse_steep[i] = 1 / steep[i];
-        }
+        for (std::size_t i = 0; i < alphas.size(); ++i) coat[i] = PreparedGrazing(alphas[i]);
         diffuse = b.diffuse;
         if (b.coated)
             diffuse *=
                 1
-                - std::min(1.0f,
-                           max_component(b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(o.z, b.ggx)));
+                - std::min(
+                    1.0f,
+                    max_component(b.coat_f0 + (b.coat_f90 - b.coat_f0) * grazing_albedo(b.w_out.v.z, b.ggx)));
     }
+};
+
+template <Shape>
+struct Prepared : PreparedBase {
+    using PreparedBase::PreparedBase;
 };
 
 /// x² + y² with the axes scaled, where lobes are `Stretched`.
@@ -81,94 +110,267 @@ HWY_INLINE VF surface_length2(VF x, VF y, float scale_x, float scale_y) {
     return hn::MulAdd(x, x, squared(y));
 }
 
+/// 1 − cos, as grazing_albedo() has it.
+HWY_INLINE VF grazing_of(VF cosine) {
+    return hn::Min(hn::Max(hn::Sub(constant(1), cosine), constant(1e-3f)), constant(1));
+}
+
+HWY_INLINE VF grazing_albedo_at(const PreparedGrazing& g, VF beside, VF beside2) {
+    // Rough coats are steep alone: no division.
+    const VF whole = g.flat == 0 ? hn::Mul(hn::Mul(beside2, beside), constant(g.inverse_steep))
+                                 : hn::Div(hn::Mul(squared(beside2), beside),
+                                           hn::MulAdd(constant(g.steep), beside2, constant(g.flat)));
+    return hn::Min(whole, constant(1));
+}
+
 /// The coat's grazing albedo.
 template <bool Stretched>
-HWY_INLINE VF grazing_albedo(const Prepared& p, VF cosine) {
-    const VF beside = hn::Min(hn::Max(hn::Sub(constant(1), cosine), constant(1e-3f)), constant(1));
+HWY_INLINE VF coat_grazing_albedo(const PreparedBase& p, VF cosine) {
+    const VF beside = grazing_of(cosine);
     const VF beside2 = squared(beside);
-    const auto at = [&](std::size_t i) {
-        // Rough coats are steep alone: no division.
-        const VF whole = p.flat[i] == 0
-                             ? hn::Mul(hn::Mul(beside2, beside), constant(p.inverse_steep[i]))
-                             : hn::Div(hn::Mul(squared(beside2), beside),
-                                       hn::MulAdd(constant(p.steep[i]), beside2, constant(p.flat[i])));
-        return hn::Min(whole, constant(1));
-    };
+    const auto at = [&](std::size_t i) { return grazing_albedo_at(p.coat[i], beside, beside2); };
     if constexpr (!Stretched) return at(0);
     return hn::Max(at(0), hn::Max(at(1), at(2)));
 }
 
-/// D·G / (4 cos θ_out) at the half vector with these squared components (the density's), not yet divided by
-/// the squared length. One division for those of the density, of Λ and of the masking.
+/// What the base's coat lets pass.
 template <bool Stretched>
-HWY_INLINE VF lobe(const Prepared& p, const Vec3s& w, VF m_xy2, VF m_z2, VF length2) {
-    const VF density_root = hn::MulAdd(constant(p.a2), m_z2, m_xy2);
+HWY_INLINE VF coat_transmittance(const PreparedBase& p, VF cosine) {
+    const Spectrums coat = schlick(p.b.coat_f0, p.b.coat_f90, coat_grazing_albedo<Stretched>(p, cosine));
+    const VF most = hn::Max(coat.r, hn::Max(coat.g, coat.b));
+    return hn::Max(hn::Sub(constant(1), most), constant(0));
+}
+
+/// w_out + w_in by what lobes need of it.
+struct HalfVector {
+    Vec3s m;
+    VF xy2, z2, length2;
+
+    HWY_INLINE HalfVector(LocalDir w_out, const Vec3s& w)
+        : m{hn::Add(w.x, constant(w_out.v.x)), hn::Add(w.y, constant(w_out.v.y)),
+            hn::Add(w.z, constant(w_out.v.z))},
+          xy2(hn::MulAdd(m.x, m.x, squared(m.y))),
+          z2(squared(m.z)),
+          length2(hn::Max(hn::Add(xy2, z2), constant(1e-20f))) {}
+
+    /// Schlick's (1 − cos)⁵: |w_out + w_in| / 2 = cos of the angle between either and the half vector.
+    [[nodiscard]] HWY_INLINE VF grazing() const {
+        const VF x = hn::Max(hn::NegMulAdd(hn::Sqrt(length2), constant(0.5f), constant(1)), constant(0));
+        return hn::Mul(squared(squared(x)), x);
+    }
+};
+
+/// D·G / (4 cos θ_out). One division for those of the density, of Λ and of the masking.
+template <bool Stretched>
+HWY_INLINE VF lobe(const PreparedLobe& p, const Vec3s& w, const HalfVector& half) {
+    // The axes are squeezed in the density, against Λ's.
+    const VF m_xy2 = Stretched
+                         ? surface_length2<Stretched>(half.m.x, half.m.y, p.ggx.stretch_y, p.ggx.stretch_x)
+                         : half.xy2;
+    const VF density_root = hn::MulAdd(constant(p.a2), half.z2, m_xy2);
     const VF z2 = squared(w.z);
-    const VF xy2 = surface_length2<Stretched>(w.x, w.y, p.b.ggx.stretch_x, p.b.ggx.stretch_y);
+    const VF xy2 = surface_length2<Stretched>(w.x, w.y, p.ggx.stretch_x, p.ggx.stretch_y);
     const VF root = hn::Sqrt(hn::MulAdd(constant(p.a2), xy2, z2));
     // (½ + Λ_in)·cos θ_in = root / 2
-    const VF masking = p.b.ggx.masking == Masking::correlated
+    const VF masking = p.ggx.masking == Masking::correlated
                            ? hn::MulAdd(constant(0.5f + p.lambda_out), w.z, hn::Mul(constant(0.5f), root))
                            : hn::Mul(constant(0.5f * (1 + p.lambda_out)), hn::Add(w.z, root));
-    return hn::Div(hn::Mul(hn::Mul(constant(p.scale), w.z), squared(length2)),
+    return hn::Div(hn::Mul(hn::Mul(constant(p.scale), w.z), squared(half.length2)),
                    hn::Mul(squared(density_root), masking));
 }
 
-template <bool Stretched>
-HWY_INLINE Spectrums reflect(const Prepared& p, const Vec3s& w) {
-    const ReceiverBsdf& b = p.b;
-    const VF cosine = hn::Mul(w.z, constant(inv_pi));
-    if (!b.specular && !b.coated)
-        return {hn::Mul(cosine, constant(p.diffuse.r)), hn::Mul(cosine, constant(p.diffuse.g)),
-                hn::Mul(cosine, constant(p.diffuse.b))};
-    const Vec3s m{hn::Add(w.x, constant(b.w_out.v.x)), hn::Add(w.y, constant(b.w_out.v.y)),
-                  hn::Add(w.z, constant(b.w_out.v.z))};
-    const VF m_xy2 = hn::MulAdd(m.x, m.x, squared(m.y)), m_z2 = squared(m.z);
-    const VF length2 = hn::Max(hn::Add(m_xy2, m_z2), constant(1e-20f));
-    // |w_out + w_in| / 2 = cos of the angle between either and the half vector
-    const VF x = hn::Max(hn::NegMulAdd(hn::Sqrt(length2), constant(0.5f), constant(1)), constant(0));
-    const VF grazing = hn::Mul(squared(squared(x)), x);
-    VF base = cosine;
-    if (b.coated) {
-        const Spectrums coat = schlick(b.coat_f0, b.coat_f90, grazing_albedo<Stretched>(p, w.z));
-        const VF most = hn::Max(coat.r, hn::Max(coat.g, coat.b));
-        base = hn::Mul(base, hn::Max(hn::Sub(constant(1), most), constant(0)));
-    }
-    Spectrums out{hn::Mul(base, constant(p.diffuse.r)), hn::Mul(base, constant(p.diffuse.g)),
-                  hn::Mul(base, constant(p.diffuse.b))};
-    if (!b.specular) return out;
-    const VF density_xy2 = Stretched ? surface_length2<Stretched>(m.x, m.y, p.squeeze_x, p.squeeze_y) : m_xy2;
-    const VF specular = lobe<Stretched>(p, w, density_xy2, m_z2, length2);
-    const Spectrums fresnel = schlick(b.specular_f0, b.specular_f90, grazing);
-    return {hn::MulAdd(specular, fresnel.r, out.r), hn::MulAdd(specular, fresnel.g, out.g),
-            hn::MulAdd(specular, fresnel.b, out.b)};
+HWY_INLINE Spectrums scaled(Spectrum s, VF by) {
+    return {hn::Mul(by, constant(s.r)), hn::Mul(by, constant(s.g)), hn::Mul(by, constant(s.b))};
+}
+HWY_INLINE Spectrums mul_add(VF value, const Spectrums& s, const Spectrums& to) {
+    return {hn::MulAdd(value, s.r, to.r), hn::MulAdd(value, s.g, to.g), hn::MulAdd(value, s.b, to.b)};
 }
 
-template <bool Stretched>
-HWY_INLINE Spectrums above_horizon(const Prepared& p, const Vec3s& direction) {
+template <Shape shape>
+HWY_INLINE Spectrums reflect(const Prepared<shape>& p, const Vec3s& w) {
+    constexpr bool stretched = shape == Shape::stretched;
+    const ReceiverBsdf& b = p.b;
+    const VF cosine = hn::Mul(w.z, constant(inv_pi));
+    if (!b.specular && !b.coated) return scaled(p.diffuse, cosine);
+    VF base = cosine;
+    if (b.coated) base = hn::Mul(base, coat_transmittance<stretched>(p, w.z));
+    const Spectrums out = scaled(p.diffuse, base);
+    if (!b.specular) return out;
+    const HalfVector half(b.w_out, w);
+    return mul_add(lobe<stretched>(p.specular, w, half),
+                   schlick(b.specular_f0, b.specular_f90, half.grazing()), out);
+}
+
+/// fresnel_dielectric().
+HWY_INLINE VF fresnel(float eta, VF cosine) {
+    const VF beside2 = hn::Max(hn::NegMulAdd(cosine, cosine, constant(1)), constant(0));
+    const VF transmitted =
+        hn::Sqrt(hn::Max(hn::NegMulAdd(beside2, constant(1 / sqr(eta)), constant(1)), constant(0)));
+    const VF a = hn::Mul(constant(eta), cosine), b = hn::Mul(constant(eta), transmitted);
+    const VF parallel = hn::Div(hn::Sub(a, transmitted), hn::Add(a, transmitted));
+    const VF perpendicular = hn::Div(hn::Sub(cosine, b), hn::Add(cosine, b));
+    return hn::Mul(constant(0.5f), hn::MulAdd(parallel, parallel, squared(perpendicular)));
+}
+
+/// The functions of one direction that sheen is made of.
+struct PreparedSheen {
+    SheenCurves curves{};
+    float exponent = 0, scale = 0;  // of its density, which is that of half vectors
+
+    PreparedSheen() = default;
+    explicit PreparedSheen(float alpha)
+        : curves(sheen_curves(alpha)), exponent(0.5f / alpha), scale((2 + 1 / alpha) * 0.5f * inv_pi) {}
+
+    /// Of the lobe as published, which exceeds 1 at grazing angles.
+    [[nodiscard]] HWY_INLINE VF albedo(VF cosine) const {
+        const F f;
+        const hn::RebindToSigned<F> i;
+        const VF at =
+            hn::Mul(hn::Sqrt(hn::Min(cosine, constant(1))), constant(static_cast<float>(sheen_cosines - 1)));
+        const auto entry = hn::Min(hn::ConvertTo(i, at), hn::Set(i, sheen_cosines - 2));
+        const VF beyond = hn::Sub(at, hn::ConvertTo(f, entry));
+        const VF low = hn::GatherIndex(f, curves.albedo.data(), entry),
+                 high = hn::GatherIndex(f, curves.albedo.data() + 1, entry);
+        return hn::MulAdd(beyond, hn::Sub(high, low), low);
+    }
+    [[nodiscard]] HWY_INLINE VF lambda(VF cosine) const {
+        const F f;
+        const VF beside = hn::Max(hn::Sub(constant(1), cosine), constant(0));
+        const VF exponents = log_lambda(hn::Min(cosine, beside));
+        const VF mirrored = hn::Sub(hn::Mul(constant(2), log_lambda(constant(0.5f))), exponents);
+        return hn::Exp(f, hn::IfThenElse(hn::Lt(cosine, constant(0.5f)), exponents, mirrored));
+    }
+    [[nodiscard]] HWY_INLINE VF density(const HalfVector& half) const {
+        const VF sine2 = hn::Max(hn::Div(half.xy2, half.length2), constant(1e-20f));
+        return hn::Mul(constant(scale), power(sine2, exponent));
+    }
+
+  private:
+    [[nodiscard]] HWY_INLINE VF log_lambda(VF x) const {
+        const VF fall =
+            hn::MulAdd(constant(curves.b), power(hn::Max(x, constant(2e-38f)), curves.c), constant(1));
+        return hn::Add(hn::Div(constant(curves.a), fall),
+                       hn::MulAdd(constant(curves.d), x, constant(curves.e)));
+    }
+    static HWY_INLINE VF power(VF x, float exponent) {
+        const F f;
+        return hn::Exp(f, hn::Mul(constant(exponent), hn::Log(f, x)));
+    }
+};
+
+/// Transmittances of what lies over each part, from one direction.
+struct Through {
+    VF clearcoat, lobes, diffuse;
+};
+
+template <>
+struct Prepared<Shape::layered> : PreparedBase {
+    PreparedLobe clearcoat;
+    PreparedGrazing clearcoat_grazing;
+    PreparedSheen sheen;
+    float clearcoat_out, lobes_out;  // transmittances to w_out
+    float sheen_albedo_out = 1, sheen_lambda_out = 0;
+
+    explicit Prepared(const ReceiverBsdf& bsdf)
+        : PreparedBase(bsdf),
+          clearcoat({bsdf.over.clearcoat_alpha, bsdf.over.clearcoat_masking}, bsdf.w_out),
+          clearcoat_grazing(bsdf.over.clearcoat_alpha),
+          sheen(bsdf.over.sheen > 0 ? PreparedSheen(bsdf.over.sheen_alpha) : PreparedSheen()) {
+        const VF cosine = constant(b.w_out.v.z);
+        const Through out = through(cosine);
+        clearcoat_out = hn::GetLane(out.clearcoat);
+        lobes_out = hn::GetLane(out.lobes);
+        diffuse = b.diffuse * hn::GetLane(out.diffuse);
+        if (!has_sheen_lobe(b)) return;
+        sheen_albedo_out = hn::GetLane(sheen.albedo(cosine));
+        sheen_lambda_out = hn::GetLane(sheen.lambda(cosine));
+    }
+
+    [[nodiscard]] HWY_INLINE Through through(VF cosine) const {
+        Through t{constant(1), constant(1), constant(1)};
+        if (b.over.eta > 0) {
+            t.diffuse = hn::Sub(constant(1), fresnel(b.over.eta, cosine));
+            return t;
+        }
+        if (b.over.clearcoat > 0) {
+            const VF beside = grazing_of(cosine);
+            const VF albedo = hn::MulAdd(grazing_albedo_at(clearcoat_grazing, beside, squared(beside)),
+                                         constant(1 - clearcoat_f0), constant(clearcoat_f0));
+            t.clearcoat = hn::NegMulAdd(albedo, constant(b.over.clearcoat), constant(1));
+        }
+        t.lobes = t.clearcoat;
+        if (b.over.sheen > 0) {
+            const VF albedo = hn::Min(sheen.albedo(cosine), constant(1));
+            t.lobes = hn::Mul(
+                t.lobes, hn::Max(hn::NegMulAdd(albedo, constant(b.over.sheen), constant(1)), constant(0)));
+        }
+        t.diffuse = t.lobes;
+        if (b.coated)
+            t.diffuse = hn::Mul(t.lobes, is_anisotropic(b.ggx) ? coat_transmittance<true>(*this, cosine)
+                                                               : coat_transmittance<false>(*this, cosine));
+        return t;
+    }
+
+    /// D·V·cos θ_in of sheen.
+    [[nodiscard]] HWY_INLINE VF sheen_value(const Vec3s& w, const HalfVector& half) const {
+        const VF most = hn::Max(hn::Max(sheen.albedo(w.z), constant(sheen_albedo_out)), constant(1));
+        const VF masking = hn::Add(constant(1 + sheen_lambda_out), sheen.lambda(w.z));
+        return hn::Div(sheen.density(half), hn::Mul(hn::Mul(masking, constant(4 * b.w_out.v.z)), most));
+    }
+};
+
+template <>
+HWY_INLINE Spectrums reflect(const Prepared<Shape::layered>& p, const Vec3s& w) {
+    const ReceiverBsdf& b = p.b;
+    const OverLayers& over = b.over;
+    const Through in = p.through(w.z);
+    Spectrums out = scaled(p.diffuse, hn::Mul(hn::Mul(w.z, constant(inv_pi)), in.diffuse));
+    if (!has_lobes(b)) return out;
+    const HalfVector half(b.w_out, w);
+    if (b.specular) {
+        const VF value = hn::Mul(lobe<true>(p.specular, w, half), hn::Min(in.lobes, constant(p.lobes_out)));
+        const Spectrums reflected =
+            over.eta > 0
+                ? scaled(Spectrum{1}, fresnel(over.eta, hn::Mul(hn::Sqrt(half.length2), constant(0.5f))))
+                : schlick(b.specular_f0, b.specular_f90, half.grazing());
+        out = mul_add(value, reflected, out);
+    }
+    if (has_sheen_lobe(b)) {
+        const VF value = hn::Mul(p.sheen_value(w, half), hn::Min(in.clearcoat, constant(p.clearcoat_out)));
+        out = mul_add(value, scaled(over.sheen_lobe, constant(1)), out);
+    }
+    if (has_clearcoat_lobe(b)) {
+        const Spectrum f0{over.clearcoat_lobe * clearcoat_f0}, f90{over.clearcoat_lobe};
+        out = mul_add(lobe<false>(p.clearcoat, w, half), schlick(f0, f90, half.grazing()), out);
+    }
+    return out;
+}
+
+template <Shape shape>
+HWY_INLINE Spectrums above_horizon(const Prepared<shape>& p, const Vec3s& direction) {
     const Vec3s w{dot(direction, p.b.shading_x), dot(direction, p.b.shading_y),
                   dot(direction, p.b.shading_z)};
     const auto above = hn::Gt(w.z, constant(0));
-    const Spectrums s = reflect<Stretched>(p, {w.x, w.y, hn::Max(w.z, constant(1e-7f))});
+    const Spectrums s = reflect(p, {w.x, w.y, hn::Max(w.z, constant(1e-7f))});
     return {hn::IfThenElseZero(above, s.r), hn::IfThenElseZero(above, s.g), hn::IfThenElseZero(above, s.b)};
 }
 
-template <bool Stretched>
+template <Shape shape>
 HWY_INLINE void evaluate_as(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
     const F f;
-    const Prepared prepared(bsdf);
+    const Prepared<shape> prepared(bsdf);
     const std::size_t lanes = hn::Lanes(f), count = w_in.x.size(), whole = count / lanes * lanes;
     std::size_t i = 0;
     for (; i < whole; i += lanes) {
-        const Spectrums s = above_horizon<Stretched>(
+        const Spectrums s = above_horizon(
             prepared, {hn::LoadU(f, &w_in.x[i]), hn::LoadU(f, &w_in.y[i]), hn::LoadU(f, &w_in.z[i])});
         hn::StoreU(s.r, f, &out.r[i]);
         hn::StoreU(s.g, f, &out.g[i]);
         hn::StoreU(s.b, f, &out.b[i]);
     }
     for (; i < count; ++i) {
-        const Spectrums s = above_horizon<Stretched>(
-            prepared, {constant(w_in.x[i]), constant(w_in.y[i]), constant(w_in.z[i])});
+        const Spectrums s =
+            above_horizon(prepared, {constant(w_in.x[i]), constant(w_in.y[i]), constant(w_in.z[i])});
         out.r[i] = hn::GetLane(s.r);
         out.g[i] = hn::GetLane(s.g);
         out.b[i] = hn::GetLane(s.b);
@@ -176,23 +378,27 @@ HWY_INLINE void evaluate_as(const ReceiverBsdf& bsdf, const Directions& w_in, co
 }
 
 void evaluate_all(const ReceiverBsdf& bsdf, const Directions& w_in, const SpectrumArrays& out) {
-    if (is_anisotropic(bsdf.ggx))
-        evaluate_as<true>(bsdf, w_in, out);
-    else
-        evaluate_as<false>(bsdf, w_in, out);
+    switch (shape_of(bsdf)) {
+        case Shape::round:
+            return evaluate_as<Shape::round>(bsdf, w_in, out);
+        case Shape::stretched:
+            return evaluate_as<Shape::stretched>(bsdf, w_in, out);
+        case Shape::layered:
+            return evaluate_as<Shape::layered>(bsdf, w_in, out);
+    }
 }
 
-template <bool Stretched>
+template <Shape shape>
 HWY_INLINE void evaluate_cells_as(const ReceiverBsdf& bsdf, const Directions& centers, const CellMask& wanted,
                                   const SpectrumArrays& out) {
     const F f;
-    const Prepared prepared(bsdf);
+    const Prepared<shape> prepared(bsdf);
     constexpr std::size_t side = mask_side / 2;
     for (std::size_t y = 0; y < side; ++y)
         for (std::size_t x = 0; x < side; x += hn::Lanes(f)) {
             if (!cells::any_in_lanes(wanted[y], x)) continue;
             const std::size_t at = y * side + x;
-            const Spectrums s = above_horizon<Stretched>(
+            const Spectrums s = above_horizon(
                 prepared,
                 {hn::LoadU(f, &centers.x[at]), hn::LoadU(f, &centers.y[at]), hn::LoadU(f, &centers.z[at])});
             hn::StoreU(s.r, f, &out.r[at]);
@@ -238,11 +444,11 @@ class TileRow {
     const MaskRow* lit_;             // four rows
 };
 
-template <bool Stretched>
+template <Shape shape>
 HWY_INLINE void reflect_tiles_as(const ReceiverBsdf& bsdf, const Directions& directions,
                                  std::span<const std::uint32_t> radiance, const Mask& lit, Spectrum& out) {
     const F f;
-    const Prepared prepared(bsdf);
+    const Prepared<shape> prepared(bsdf);
     constexpr std::size_t side = mask_side / 4;
     const int half_width = static_cast<int>(2 * hn::Lanes(f));  // bits
     Spectrums sum{hn::Zero(f), hn::Zero(f), hn::Zero(f)};
@@ -256,9 +462,9 @@ HWY_INLINE void reflect_tiles_as(const ReceiverBsdf& bsdf, const Directions& dir
             const auto lit_bits = [&](const MaskRow& row, int from) { return row.bits(from, half_width); };
             if ((lit_bits(any, column) | lit_bits(any, column + half_width)) == 0) continue;
             const std::size_t at = y * side + x;
-            const Spectrums s = above_horizon<Stretched>(
-                prepared, {hn::LoadU(f, &directions.x[at]), hn::LoadU(f, &directions.y[at]),
-                           hn::LoadU(f, &directions.z[at])});
+            const Spectrums s =
+                above_horizon(prepared, {hn::LoadU(f, &directions.x[at]), hn::LoadU(f, &directions.y[at]),
+                                         hn::LoadU(f, &directions.z[at])});
             const bool all_lit =
                 (lit_bits(all, column) & lit_bits(all, column + half_width)) == lit_bits(~MaskRow{}, 0);
             const cells::Colors light = all_lit ? tiles.tiles<true>(4 * x) : tiles.tiles<false>(4 * x);
@@ -272,27 +478,35 @@ HWY_INLINE void reflect_tiles_as(const ReceiverBsdf& bsdf, const Directions& dir
 
 void evaluate_some_cells(const ReceiverBsdf& bsdf, const Directions& centers, const CellMask& wanted,
                          const SpectrumArrays& out) {
-    if (is_anisotropic(bsdf.ggx))
-        evaluate_cells_as<true>(bsdf, centers, wanted, out);
-    else
-        evaluate_cells_as<false>(bsdf, centers, wanted, out);
+    switch (shape_of(bsdf)) {
+        case Shape::round:
+            return evaluate_cells_as<Shape::round>(bsdf, centers, wanted, out);
+        case Shape::stretched:
+            return evaluate_cells_as<Shape::stretched>(bsdf, centers, wanted, out);
+        case Shape::layered:
+            return evaluate_cells_as<Shape::layered>(bsdf, centers, wanted, out);
+    }
 }
 
 void reflect_all_tiles(const ReceiverBsdf& bsdf, const Directions& directions,
                        std::span<const std::uint32_t> radiance, const Mask& lit, Spectrum& out) {
-    if (is_anisotropic(bsdf.ggx))
-        reflect_tiles_as<true>(bsdf, directions, radiance, lit, out);
-    else
-        reflect_tiles_as<false>(bsdf, directions, radiance, lit, out);
+    switch (shape_of(bsdf)) {
+        case Shape::round:
+            return reflect_tiles_as<Shape::round>(bsdf, directions, radiance, lit, out);
+        case Shape::stretched:
+            return reflect_tiles_as<Shape::stretched>(bsdf, directions, radiance, lit, out);
+        case Shape::layered:
+            return reflect_tiles_as<Shape::layered>(bsdf, directions, radiance, lit, out);
+    }
 }
 
 /// `radiance`: null for 1 everywhere.
-template <bool Stretched>
+template <Shape shape>
 HWY_INLINE void evaluate_tiles_as(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
                                   const RadianceRuns* radiance, std::size_t per_texel,
                                   std::span<const std::uint32_t> tiles, const SpectrumArrays& out) {
     const F f;
-    const Prepared prepared(bsdf);
+    const Prepared<shape> prepared(bsdf);
     const VF share = constant(1 / static_cast<float>(per_texel));
     for (std::size_t k = 0; k < tiles.size(); ++k)
         for (std::size_t lane = 0; lane < 16; lane += hn::Lanes(f)) {
@@ -302,7 +516,7 @@ HWY_INLINE void evaluate_tiles_as(const ReceiverBsdf& bsdf, Vec3 normal, const D
                 const Vec3s w{hn::LoadU(f, &points.x[at]), hn::LoadU(f, &points.y[at]),
                               hn::LoadU(f, &points.z[at])};
                 const VF factor = hn::IfThenElseZero(hn::Gt(dot(w, normal), hn::Zero(f)), share);
-                const Spectrums s = above_horizon<Stretched>(prepared, w);
+                const Spectrums s = above_horizon(prepared, w);
                 r = hn::MulAdd(s.r, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->r[at])) : factor, r);
                 g = hn::MulAdd(s.g, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->g[at])) : factor, g);
                 b = hn::MulAdd(s.b, radiance ? hn::Mul(factor, hn::LoadU(f, &radiance->b[at])) : factor, b);
@@ -316,10 +530,14 @@ HWY_INLINE void evaluate_tiles_as(const ReceiverBsdf& bsdf, Vec3 normal, const D
 void evaluate_all_tiles(const ReceiverBsdf& bsdf, Vec3 normal, const DirectionRuns& points,
                         const RadianceRuns* radiance, std::size_t per_texel,
                         std::span<const std::uint32_t> tiles, const SpectrumArrays& out) {
-    if (is_anisotropic(bsdf.ggx))
-        evaluate_tiles_as<true>(bsdf, normal, points, radiance, per_texel, tiles, out);
-    else
-        evaluate_tiles_as<false>(bsdf, normal, points, radiance, per_texel, tiles, out);
+    switch (shape_of(bsdf)) {
+        case Shape::round:
+            return evaluate_tiles_as<Shape::round>(bsdf, normal, points, radiance, per_texel, tiles, out);
+        case Shape::stretched:
+            return evaluate_tiles_as<Shape::stretched>(bsdf, normal, points, radiance, per_texel, tiles, out);
+        case Shape::layered:
+            return evaluate_tiles_as<Shape::layered>(bsdf, normal, points, radiance, per_texel, tiles, out);
+    }
 }
 
 }  // namespace

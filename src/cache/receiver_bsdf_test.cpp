@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "cache/test_random.hpp"
+#include "tests/bsdfs.hpp"
 #include "tests/targets.hpp"
 
 namespace relumine {
@@ -20,6 +21,37 @@ Vertex vertex_of(const Bsdf& bsdf, LocalDir w_out) {
     return vertex;
 }
 
+/// Every layer alone and above every other, rough, sharp and too smooth for a lobe.
+std::vector<Bsdf> layered_bsdfs() {
+    const MetallicRoughness plastic = testing::plastic({0.5f, 0.2f, 0.1f}, 0.4f),
+                            brushed{{}, {}, {}, {0.9f, 0.6f, 0.3f}, Spectrum{1}, testing::ggx(0.3f, 0.08f)};
+    MetallicRoughness smooth = plastic, brushed_plastic = plastic;
+    smooth.smooth = true;
+    brushed_plastic.ggx = testing::ggx(0.1f, 0.6f);
+    std::vector<Bsdf> all;
+    for (const MetallicRoughness& base : {plastic, brushed, smooth, brushed_plastic}) {
+        for (const float alpha : {0.6f, 0.03f}) all.emplace_back(testing::coated(base, 0.8f, alpha));
+        CoatedLayers smooth_coat = testing::coated(base, 1, smooth_alpha);
+        smooth_coat.clearcoat_smooth = true;
+        all.emplace_back(without_delta(smooth_coat));
+        for (const float alpha : {1.0f, 0.25f, 0.01f}) {
+            all.emplace_back(testing::with_sheen(testing::coated(base, 0, 0.5f), {0.9f, 0.5f, 0.1f}, alpha));
+            all.emplace_back(testing::with_sheen(testing::coated(base, 1, 0.2f), {0.1f, 0.4f, 0.8f}, alpha));
+        }
+    }
+    CoatedLayers separable = testing::coated(plastic, 1, 0.3f);
+    separable.clearcoat_ggx.masking = Masking::separable;
+    all.emplace_back(separable);
+    for (const float eta : {1.5f, 2.2f, 1 / 1.5f})
+        for (const Ggx& ggx : {testing::ggx(0.3f), testing::ggx(0.05f), testing::ggx(0.5f, 0.1f)})
+            for (const bool without : {false, true}) {
+                CoatedDiffuse coated{{0.7f, 0.4f, 0.2f}, eta, ggx};
+                coated.smooth = without;
+                all.push_back(without_delta(coated));
+            }
+    return all;
+}
+
 TEST(ReceiverBsdfKernel, AgreesWithTheBsdfsOnEveryTarget) {
     const Ggx sharp{0.05f, Masking::correlated}, rough{0.6f, Masking::separable};
     MetallicRoughness plastic{{0.5f, 0.2f, 0.1f}, Spectrum{0.04f}, Spectrum{1}, Spectrum{0.04f},
@@ -28,14 +60,14 @@ TEST(ReceiverBsdfKernel, AgreesWithTheBsdfsOnEveryTarget) {
     coat_alone.smooth = true;
     MetallicRoughness stretched = plastic;
     stretched.ggx = make_ggx(0.7f, 0.05f, Masking::correlated);
-    const std::array<Bsdf, 7> bsdfs{
-        Lambert{{0.7f, 0.5f, 0.2f}},
-        RoughConductor{{0.9f, 0.6f, 0.3f}, sharp},
-        RoughConductor{{0.9f, 0.6f, 0.3f}, rough},
-        plastic,
-        without_delta(coat_alone),
-        RoughConductor{{0.9f, 0.6f, 0.3f}, make_ggx(0.1f, 0.5f, Masking::separable)},
-        stretched};
+    std::vector<Bsdf> bsdfs{Lambert{{0.7f, 0.5f, 0.2f}},
+                            RoughConductor{{0.9f, 0.6f, 0.3f}, sharp},
+                            RoughConductor{{0.9f, 0.6f, 0.3f}, rough},
+                            plastic,
+                            without_delta(coat_alone),
+                            RoughConductor{{0.9f, 0.6f, 0.3f}, make_ggx(0.1f, 0.5f, Masking::separable)},
+                            stretched};
+    std::ranges::copy(layered_bsdfs(), std::back_inserter(bsdfs));
     constexpr std::size_t count = 1003;  // no multiple of any number of lanes
     const Frame receiver = frame_around({0, 0, 1});
     on_every_target([&] {
@@ -61,7 +93,8 @@ TEST(ReceiverBsdfKernel, AgreesWithTheBsdfsOnEveryTarget) {
                     const Spectrum expected = eval(bsdf, vertex.w_out, w_in);
                     if (std::abs(w_in.v.z) < 1e-5f) continue;  // rounding decides which side that is
                     // Half vectors of sharp lobes lose digits in either formula.
-                    ASSERT_NEAR(red[i], expected.r, 2e-4f * expected.r + 1e-7f) << i;
+                    ASSERT_NEAR(red[i], expected.r, 2e-4f * expected.r + 1e-7f)
+                        << i << " of " << &bsdf - bsdfs.data();
                     ASSERT_NEAR(green[i], expected.g, 2e-4f * expected.g + 1e-7f) << i;
                     ASSERT_NEAR(blue[i], expected.b, 2e-4f * expected.b + 1e-7f) << i;
                 }
@@ -145,8 +178,9 @@ TEST(ReceiverBsdfKernel, AveragesOverTheTexelsOfTilesOnEveryTarget) {
                                     Spectrum{1},
                                     {0.3f, Masking::correlated},
                                     false};
-    const std::array<Bsdf, 3> bsdfs{Lambert{{0.7f, 0.5f, 0.2f}},
-                                    RoughConductor{{0.9f, 0.6f, 0.3f}, {0.1f, Masking::correlated}}, plastic};
+    const std::array<Bsdf, 4> bsdfs{
+        Lambert{{0.7f, 0.5f, 0.2f}}, RoughConductor{{0.9f, 0.6f, 0.3f}, {0.1f, Masking::correlated}}, plastic,
+        testing::with_sheen(testing::coated(plastic, 0.7f, 0.1f), {0.5f, 0.3f, 0.1f}, 0.3f)};
     const std::vector<std::uint32_t> tiles{0, 3, 4, 6};
     const Vec3 normal = normalize({0.3f, 0.2f, 1});
     for (const std::size_t per_texel : {std::size_t{1}, std::size_t{4}, std::size_t{16}}) {
@@ -177,6 +211,29 @@ TEST(ReceiverBsdfKernel, AveragesOverTheTexelsOfTilesOnEveryTarget) {
                     ASSERT_NEAR(y[i], expected.product[i].b, 3e-4f * expected.product[i].b + 1e-7f) << i;
                 }
             });
+        }
+    }
+}
+
+/// Without lobes there is the base as seen through all layers, which is what changes with its colour.
+TEST(ReceiverBsdfKernel, WithoutLobesIsTheDiffusePart) {
+    const Frame receiver = frame_around({0, 0, 1});
+    for (const Bsdf& bsdf : layered_bsdfs()) {
+        const ReceiverBsdf all = *receiver_bsdf(vertex_of(bsdf, {normalize({0.3f, 0.4f, 0.8f})}), receiver);
+        ReceiverBsdf doubled = all;
+        doubled.diffuse = all.diffuse * 2;
+        EXPECT_TRUE(is_layered(all));
+        EXPECT_EQ(has_lobes(all), least_width(all) < infinity);
+        for (std::uint64_t i = 0; i < 20; ++i) {
+            const Vec3 w = random_direction(i, 50);
+            const auto value = [&](const ReceiverBsdf& b) {
+                Spectrum f;
+                evaluate(b, {{&w.x, 1}, {&w.y, 1}, {&w.z, 1}}, {{&f.r, 1}, {&f.g, 1}, {&f.b, 1}});
+                return f;
+            };
+            const Spectrum whole = value(all), more = value(doubled), part = value(without_lobes(all));
+            EXPECT_NEAR(more.r - whole.r, part.r, 1e-5f * more.r + 1e-9f);
+            EXPECT_NEAR(more.b - whole.b, part.b, 1e-5f * more.b + 1e-9f);
         }
     }
 }

@@ -111,9 +111,7 @@ void refine(const ReceiverBsdf& bsdf, BsdfTable& table) {
     for (const std::uint32_t cell : table.fine_cells) table.r[cell] = table.g[cell] = table.b[cell] = 0;
 }
 
-bool is_as_wide(const ReceiverBsdf& bsdf, float alpha) {
-    return !bsdf.specular || least_alpha(bsdf.ggx) >= alpha;
-}
+bool is_as_wide(const ReceiverBsdf& bsdf, float alpha) { return least_width(bsdf) >= alpha; }
 
 Spectrum fine_cell_sum(const std::vector<std::uint32_t>& radiance, const Mask& lit, const BsdfTable& table,
                        std::size_t fine) {

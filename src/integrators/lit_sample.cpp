@@ -15,6 +15,8 @@ bool near(Spectrum a, Spectrum b) {
     return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) <= alike * size;
 }
 
+bool near(float a, float b) { return std::abs(a - b) <= alike * std::max(a, b); }
+
 bool same_place(const GatherPoint& a, const GatherPoint& b, float footprint) {
     return a.depth == b.depth && dot(a.frame.n, b.frame.n) >= least_cosine
            && std::abs(dot(b.position - a.position, a.frame.n)) <= footprint;
@@ -27,10 +29,20 @@ bool same_orientation(const ReceiverBsdf& a, const ReceiverBsdf& b) {
            && std::abs(dot(a.shading_x, b.shading_x)) >= least_cosine;
 }
 
+/// What is there is of one kind and alike.
+bool same_layers(const OverLayers& a, const OverLayers& b) {
+    const bool same_clearcoat = near(a.clearcoat, b.clearcoat) && near(a.clearcoat_lobe, b.clearcoat_lobe)
+                                && (a.clearcoat == 0 || near(a.clearcoat_alpha, b.clearcoat_alpha));
+    const bool same_sheen = near(a.sheen, b.sheen) && near(a.sheen_lobe, b.sheen_lobe)
+                            && (a.sheen == 0 || near(a.sheen_alpha, b.sheen_alpha));
+    return same_clearcoat && same_sheen && near(a.eta, b.eta);
+}
+
 bool same_lobes(const ReceiverBsdf& a, const ReceiverBsdf& b) {
-    return same_orientation(a, b) && std::abs(a.ggx.alpha - b.ggx.alpha) <= alike * a.ggx.alpha
-           && near(a.specular_f0, b.specular_f0) && near(a.specular_f90, b.specular_f90)
-           && near(a.coat_f0, b.coat_f0) && near(a.coat_f90, b.coat_f90);
+    return same_layers(a.over, b.over) && same_orientation(a, b)
+           && std::abs(a.ggx.alpha - b.ggx.alpha) <= alike * a.ggx.alpha && near(a.specular_f0, b.specular_f0)
+           && near(a.specular_f90, b.specular_f90) && near(a.coat_f0, b.coat_f0)
+           && near(a.coat_f90, b.coat_f90);
 }
 
 Vec3 view_of(const ReceiverBsdf& b) {
@@ -46,7 +58,9 @@ bool divides(Spectrum a, Spectrum b) {
 }  // namespace
 
 bool shares_integral(const LitSample& a, const LitSample& b, bool exact) {
-    if (a.bsdf.specular != b.bsdf.specular || a.bsdf.coated != b.bsdf.coated) return false;
+    if (a.bsdf.specular != b.bsdf.specular || a.bsdf.coated != b.bsdf.coated
+        || is_layered(a.bsdf) != is_layered(b.bsdf))
+        return false;
     if (!same_place(a.pixel->cache.gather, b.pixel->cache.gather, a.pixel->cache.footprint)) return false;
     if (dot(a.bsdf.shading_z, b.bsdf.shading_z) < least_cosine) return false;
     const bool scales = divides(a.bsdf.diffuse, b.bsdf.diffuse);
@@ -56,7 +70,7 @@ bool shares_integral(const LitSample& a, const LitSample& b, bool exact) {
 
 bool seen_alike(const LitSample& a, const LitSample& b) {
     if (!has_layers(a.bsdf)) return true;
-    const float width = a.bsdf.specular ? std::min(alpha_x(a.bsdf.ggx), alpha_y(a.bsdf.ggx)) : 1;
+    const float width = std::min(least_width(a.bsdf), 1.0f);
     return length_squared(view_of(b.bsdf) - view_of(a.bsdf)) <= sqr(alike_view * width);
 }
 

@@ -52,7 +52,9 @@ struct LitCell {
 [[nodiscard]] bool seen_alike(const LitSample& a, const LitSample& b);
 
 /// Whether a surface reflects otherwise than diffusely.
-[[nodiscard]] inline bool has_layers(const ReceiverBsdf& b) { return b.specular || b.coated; }
+[[nodiscard]] inline bool has_layers(const ReceiverBsdf& b) {
+    return b.specular || b.coated || is_layered(b);
+}
 
 /// How much more `b` reflects diffusely than `a`, whose integral it shares.
 [[nodiscard]] Spectrum diffuse_ratio(const LitSample& a, const LitSample& b);

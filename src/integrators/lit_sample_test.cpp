@@ -64,6 +64,37 @@ TEST(LitSample, LobesPlacesAndNormalsMayNot) {
     EXPECT_FALSE(shares([](GroundSample& b) { b.lit.bsdf.coated = true; }));
 }
 
+TEST(LitSample, LayersMayNotDifferEither) {
+    GroundSample a;
+    OverLayers& over = a.lit.bsdf.over;
+    over.clearcoat = over.clearcoat_lobe = 0.8f;
+    over.clearcoat_alpha = 0.2f;
+    over.sheen = 0.5f;
+    over.sheen_lobe = {0.5f, 0.4f, 0.3f};
+    over.sheen_alpha = 0.3f;
+    const auto shares = [&](const auto& change) {
+        GroundSample b = a;
+        change(b.lit.bsdf.over);
+        return shares_integral(a.sample(), b.sample(), false);
+    };
+    EXPECT_TRUE(shares([](OverLayers& o) { o.clearcoat = o.clearcoat_lobe = 0.801f; }));
+    EXPECT_FALSE(shares([](OverLayers& o) { o.clearcoat = 0.7f; }));
+    EXPECT_FALSE(shares([](OverLayers& o) { o.clearcoat_lobe = 0; }));
+    EXPECT_FALSE(shares([](OverLayers& o) { o.clearcoat_alpha = 0.1f; }));
+    EXPECT_FALSE(shares([](OverLayers& o) { o.sheen = 0.4f; }));
+    EXPECT_FALSE(shares([](OverLayers& o) { o.sheen_lobe = {}; }));
+    EXPECT_FALSE(shares([](OverLayers& o) { o.sheen_alpha = 0.5f; }));
+    EXPECT_FALSE(shares([](OverLayers& o) { o.eta = 1.5f; }));
+    EXPECT_FALSE(shares([](OverLayers& o) { o = {}; }));
+    GroundSample matte = a;
+    matte.lit.bsdf = without_lobes(a.lit.bsdf);
+    matte.lit.bsdf.diffuse = {0.1f, 0.6f, 0.3f};
+    GroundSample brown = matte;
+    brown.lit.bsdf.diffuse = a.lit.bsdf.diffuse;
+    EXPECT_TRUE(shares_integral(brown.sample(), matte.sample(), false));
+    EXPECT_FALSE(shares_integral(brown.sample(), matte.sample(), true));
+}
+
 TEST(LitSample, PixelsShareWhatLooksAlikeFromBoth) {
     const GroundSample a;
     const auto alike = [&](float angle, float alpha) {
@@ -76,6 +107,17 @@ TEST(LitSample, PixelsShareWhatLooksAlikeFromBoth) {
     EXPECT_TRUE(alike(0.002f, 0.3f));
     EXPECT_FALSE(alike(0.002f, 0.05f));
     EXPECT_FALSE(alike(0.02f, 0.3f));
+    const auto alike_under_clearcoat = [&](float alpha) {
+        GroundSample b = a;
+        b.lit.bsdf.over.clearcoat = b.lit.bsdf.over.clearcoat_lobe = 1;
+        b.lit.bsdf.over.clearcoat_alpha = alpha;
+        GroundSample c = b;
+        b.lit.bsdf.w_out = LocalDir{{std::sin(0.002f), 0, std::cos(0.002f)}};
+        c.lit.bsdf.w_out = LocalDir{{0, 0, 1}};
+        return seen_alike(c.sample(), b.sample());
+    };
+    EXPECT_TRUE(alike_under_clearcoat(0.3f));
+    EXPECT_FALSE(alike_under_clearcoat(0.05f));
     GroundSample matte = a, turned = a;
     matte.lit.bsdf.specular = turned.lit.bsdf.specular = false;
     turned.lit.bsdf.w_out = LocalDir{{0.6f, 0, 0.8f}};

@@ -58,9 +58,7 @@ Spectrum SharedIntegral::give(float level, LitSample& sample) {
 /// The diffuse part under layers, multiplied by `scale`, is an integral of its own.
 void SharedIntegral::give_recoloured(Spectrum scale, LitSample& sample) {
     if (!has_matte_) {
-        ReceiverBsdf matte = first_->bsdf;
-        matte.specular = false;
-        matte_.run(blend_, matte, first_->pixel->cache.gather.frame.n);
+        matte_.run(blend_, without_lobes(first_->bsdf), first_->pixel->cache.gather.frame.n);
         has_matte_ = true;
     }
     const auto scaled = [&](Spectrum whole, Spectrum part) { return whole + (scale - Spectrum{1}) * part; };

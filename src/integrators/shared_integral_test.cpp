@@ -95,6 +95,23 @@ TEST(SharedIntegral, GivesOtherColoursWhatTheirOwnWould) {
     }
 }
 
+/// All lobes stay as they are where the diffuse part under them is of another colour.
+TEST(SharedIntegral, GivesOtherColoursUnderLayersWhatTheirOwnWould) {
+    GroundUnderMap ground;
+    LitSample a = ground.sample({0.5f, 0.4f, 0.3f}, true), b = ground.sample({0.1f, 0.6f, 0.3f}, true);
+    for (LitSample* sample : {&a, &b}) {
+        OverLayers& over = sample->bsdf.over;
+        over.clearcoat = over.clearcoat_lobe = 1;
+        over.clearcoat_alpha = 0.2f;
+        over.sheen = 0.5f;
+        over.sheen_lobe = Spectrum{0.5f};
+        over.sheen_alpha = 0.3f;
+    }
+    const LitSample shared = ground.given(a, b), own = ground.given(b, b);
+    expect_like(shared.reflected.direct, own.reflected.direct);
+    expect_like(shared.albedo, own.albedo);
+}
+
 TEST(SharedIntegral, TakesTheLevelOfAnotherBlend) {
     GroundUnderMap ground;
     const LitSample a = ground.sample({0.5f, 0.4f, 0.3f}, false);

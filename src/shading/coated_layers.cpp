@@ -9,8 +9,6 @@
 namespace relumine {
 namespace {
 
-constexpr float clearcoat_f0 = 0.04f;  // index of refraction 1.5
-
 float fifth_power(float x) { return sqr(sqr(x)) * x; }
 
 /// What the clear coat reflects of light from everywhere, at most.

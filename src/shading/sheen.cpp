@@ -8,11 +8,18 @@ namespace relumine {
 namespace {
 
 /// Fits of Λ for the distribution that sin^(1/α) θ makes [Estevez17, table 1].
-float lambda_exponent(float x, float alpha) {
+struct LambdaFit {
+    float a, b, c, d, e;
+};
+LambdaFit lambda_fit(float alpha) {
     const float t = sqr(1 - alpha);
     const auto mix = [&](float rough, float smooth) { return rough + (smooth - rough) * t; };
-    const float a = mix(21.5473f, 25.3245f), b = mix(3.82987f, 3.32435f), c = mix(0.19823f, 0.16801f),
-                d = mix(-1.97760f, -1.27393f), e = mix(-4.32054f, -4.85967f);
+    return {mix(21.5473f, 25.3245f), mix(3.82987f, 3.32435f), mix(0.19823f, 0.16801f),
+            mix(-1.97760f, -1.27393f), mix(-4.32054f, -4.85967f)};
+}
+
+float lambda_exponent(float x, float alpha) {
+    const auto [a, b, c, d, e] = lambda_fit(alpha);
     return a / (1 + b * std::pow(x, c)) + d * x + e;
 }
 
@@ -30,7 +37,7 @@ float published_lobe(float alpha, LocalDir w_out, LocalDir w_in) {
     return density / ((1 + lambda(out, alpha) + lambda(in, alpha)) * 4 * out * in);
 }
 
-constexpr int cosines = 32, roughnesses = 24;
+constexpr int cosines = sheen_cosines, roughnesses = 24;
 
 /// Entries stand for cos θ = (i / (cosines − 1))², and for roughnesses √α in even steps.
 float cosine_at(int i) { return std::max(sqr(static_cast<float>(i) / (cosines - 1)), 1e-3f); }
@@ -76,14 +83,20 @@ Place place_of(float x, int count) {
     return {static_cast<std::size_t>(entry), at - static_cast<float>(entry)};
 }
 
-float published_albedo(float cosine, float alpha) {
+Place roughness_place(float alpha) {
+    return place_of((std::sqrt(alpha) - least_roughness) / (1 - least_roughness), roughnesses);
+}
+
+/// Of entry `cosine` of the table.
+float tabulated_albedo(std::size_t cosine, const Place& roughness) {
     static const Table table;
-    const Place i = place_of(std::sqrt(std::max(cosine, 0.0f)), cosines),
-                j = place_of((std::sqrt(alpha) - least_roughness) / (1 - least_roughness), roughnesses);
-    const auto row = [&](std::size_t k) {
-        return lerp(table.albedo[k][j.entry], table.albedo[k][j.entry + 1], j.beyond);
-    };
-    return lerp(row(i.entry), row(i.entry + 1), i.beyond);
+    const auto& row = table.albedo[cosine];
+    return lerp(row[roughness.entry], row[roughness.entry + 1], roughness.beyond);
+}
+
+float published_albedo(float cosine, float alpha) {
+    const Place i = place_of(std::sqrt(std::max(cosine, 0.0f)), cosines), j = roughness_place(alpha);
+    return lerp(tabulated_albedo(i.entry, j), tabulated_albedo(i.entry + 1, j), i.beyond);
 }
 
 }  // namespace
@@ -95,5 +108,13 @@ float sheen_lobe(float alpha, LocalDir w_out, LocalDir w_in) {
 }
 
 float sheen_albedo(float cosine, float alpha) { return std::min(published_albedo(cosine, alpha), 1.0f); }
+
+SheenCurves sheen_curves(float alpha) {
+    const auto [a, b, c, d, e] = lambda_fit(alpha);
+    SheenCurves curves{a, b, c, d, e, {}};
+    const Place roughness = roughness_place(alpha);
+    for (std::size_t i = 0; i < curves.albedo.size(); ++i) curves.albedo[i] = tabulated_albedo(i, roughness);
+    return curves;
+}
 
 }  // namespace relumine
