@@ -236,7 +236,7 @@ class CellLight {
     /// Whether bright light may be left to rays that the BSDF draws: lobes so sharp are not worth light
     /// samples, and nothing else asks for rays where one is filled by a lamp.
     [[nodiscard]] bool meets_lights(const LitSample& sample) const {
-        return sample.bsdf.specular && sample.bsdf.ggx.alpha < sharp_alpha && !source_.residual.split.empty();
+        return sharpest_alpha(sample.bsdf) < sharp_alpha && !source_.residual.split.empty();
     }
 
     const CellLightSource& source_;
