@@ -84,9 +84,11 @@ void validate(const RenderSettings& s) {
     check_range("light samples", s.light_samples, -1, million);
     check_range("residual rays", s.residual_rays, -1, million);
     check_real("error", s.error, 0.0005f, 0.5f);
-    if (s.method != "path") {  // their numbers are 32-bit indices into one sequence per pixel
+    // Rays' numbers are 32-bit indices into one sequence per pixel.
+    if (s.method == "gather" || s.method.starts_with("reproject"))
         check_range("gather rays × samples per pixel", std::int64_t{s.gather_rays} * s.samples_per_pixel, 1,
                     max_rays_per_pixel);
+    if (s.method != "path") {
         check_range("glossy rays × samples per pixel", std::int64_t{s.glossy_rays} * s.samples_per_pixel,
                     -million, max_rays_per_pixel);
         check_range("light samples × samples per pixel", std::int64_t{s.light_samples} * s.samples_per_pixel,

@@ -41,7 +41,7 @@ class BlockCache final : public Integrator {
           max_depth_(depth_limit(settings)),
           source_(incident_source(settings, transport)),
           map_source_(source_),
-          monte_carlo_(settings, transport, view),
+          monte_carlo_(monte_carlo_settings(settings), transport, view),
           split_(transport.scene, bright_factor, plan.rays.light > 0 ? transport.field : nullptr),
           grid_(grid_side),
           points_(grid_),

@@ -11,6 +11,9 @@ constexpr float deviation_of_one = 0.75f;
 /// Light samples that are well spread: variance falls with this power of their number.
 constexpr float light_power = 1.3f;
 
+/// RayDemand::residual_gain of rays that stand for themselves: their deviation is on the safe side.
+constexpr float gain_without_filter = 1.2f;
+
 constexpr float most_rays = 4096;  // of a kind, per pixel
 
 /// The integral does not resolve lobes that are sharper: 2 α radians are less than three of its points.
@@ -29,7 +32,7 @@ RayDemand ray_demand(const RenderSettings& s) {
     demand.light_adapts = s.light_samples < 0;
     demand.sigma = s.error / l1_of_sigma;
     const bool filters = s.filter_residual && !s.unbiased;
-    demand.residual_gain = filters ? 2.6f : 1.2f;
+    demand.residual_gain = filters ? 2.6f : gain_without_filter;
     demand.light_gain = filters ? 1.0f : 0.5f;
     demand.pilot = std::clamp(power_of_two(0.08f / s.error, 1), 2.0f, 16.0f);
     return demand;
@@ -68,6 +71,16 @@ CachePlan cache_plan(const RenderSettings& s) {
     if (s.unbiased && plan.rays.residual == 0) plan.rays.residual = 1;
     if (plan.rays.residual > 0) plan.sharp_alpha = unresolved_alpha;
     return plan;
+}
+
+RenderSettings monte_carlo_settings(const RenderSettings& s) {
+    RayDemand demand = ray_demand(s);
+    demand.residual_gain = gain_without_filter;
+    const float rays = std::ceil(demand.residual_rays(1) / static_cast<float>(s.samples_per_pixel));
+    RenderSettings mine = s;
+    mine.gather_rays = static_cast<int>(rays);
+    if (s.light_samples < 0) mine.light_samples = static_cast<int>(std::ceil(rays / 4));
+    return mine;
 }
 
 CachePlan block_gather_plan(const RenderSettings& s) {

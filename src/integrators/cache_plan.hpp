@@ -37,6 +37,10 @@ struct CachePlan {
 /// unless their number was given.
 [[nodiscard]] CachePlan cache_plan(const RenderSettings& settings);
 
+/// For samples that no map serves (BSDFs that transmit, mostly): as many gather rays for a pixel as residual
+/// rays where the maps know nothing, and a quarter of them as light samples unless their number was given.
+[[nodiscard]] RenderSettings monte_carlo_settings(const RenderSettings& settings);
+
 /// One map per block of 8 × 8 pixels and surface, and nothing else: what maps are worth without more.
 [[nodiscard]] CachePlan block_gather_plan(const RenderSettings& settings);
 
