@@ -38,11 +38,12 @@ void describe(Image& image, const RenderSettings& settings, const RenderStats& s
     if (stats.stopped) image.metadata["relumine.stopped_by"] = stats.stopped_by;
 }
 
-void refuse_memory(const RenderControl& control, const RenderStats& stats) {
+void refuse_memory(const RenderControl& control, const RenderSettings& settings, const RenderStats& stats) {
     const std::string kept =
         control.checkpoint.empty() ? "" : fmt::format("; {} keeps what is done", control.checkpoint);
-    throw Error{fmt::format("memory limit: expected at most {} bytes in use, found {} after {} samples{}",
-                            control.memory_limit, resident_bytes(), stats.samples, kept)};
+    const char* way_out = settings.method == "path" ? "" : "; --method path takes the least";
+    throw Error{fmt::format("memory limit: expected at most {} bytes in use, found {} after {} samples{}{}",
+                            control.memory_limit, resident_bytes(), stats.samples, kept, way_out)};
 }
 
 /// Whether what a memory limit leaves shows in the picture.
@@ -89,6 +90,10 @@ Image render(const Scene& scene, const RenderSettings& settings, const RenderCon
                   [&](const std::string& text) { monitor.warn(text); });
     const std::optional<Checkpoint> earlier = keeper.find();
     check_memory(control, needed_before_building(scene, settings, framing, keeper.active()));
+    if (settings.guide != "none" && !wants_guide(settings))
+        monitor.warn(
+            fmt::format("guide: expected --method path or cache --unbiased, found {}, which does not use it",
+                        settings.method));
     RenderSetup setup(data, settings, framing, [&](const char* stage) { monitor.begin_stage(stage); });
     if (wants_field(settings)) {
         RayCounts rays;
@@ -124,7 +129,7 @@ Image render(const Scene& scene, const RenderSettings& settings, const RenderCon
     if (keeper.active())
         stats.checkpoint = {earlier.has_value(), earlier_samples, earlier ? earlier->work.seconds : 0,
                             keeper.written(), keeper.failed()};
-    if (!whole && monitor.stop_reason() == StopReason::memory) refuse_memory(control, stats);
+    if (!whole && monitor.stop_reason() == StopReason::memory) refuse_memory(control, settings, stats);
     stats.predicted_error = predicted_relative_l1(image);
     describe(image, settings, stats);
     if (observer) observer->finished(stats);

@@ -87,9 +87,20 @@ bool PassRunner::run() {
     bool whole = true;
     while (whole && film_.passes() < passes_.size()) whole = run_pass(passes_[film_.passes()]);
     if (keeper_.active()) keeper_.write(snapshot());
-    if (film_.passes() == 0) film_.finish_pass();  // stopped in the first pass: better some tiles than none
+    if (film_.passes() == 0) finish_with_gaps();
     monitor_.end_stage();
     return whole;
+}
+
+/// Stopped in the first pass: better some tiles than none.
+void PassRunner::finish_with_gaps() {
+    film_.finish_pass();
+    const std::uint64_t pixels = pixels_of(window_),
+                        lit = std::min(film_.samples() / passes_.front().sample_count, pixels);
+    if (lit == 0 || lit == pixels) return;  // of nothing at all others speak
+    monitor_.warn(fmt::format(
+        "stopped in the first pass: {} of {} pixels have no sample and are black{}", pixels - lit, pixels,
+        integrator_.works_in_preparation() ? "; --method path has samples everywhere sooner" : ""));
 }
 
 Preparation PassRunner::preparation(const Pass& pass) {

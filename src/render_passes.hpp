@@ -32,6 +32,7 @@ class PassRunner {
 
   private:
     [[nodiscard]] std::uint64_t work_done() const;  // pixels × samples
+    void finish_with_gaps();
     [[nodiscard]] Preparation preparation(const Pass& pass);
     void recover();
     /// False where it was stopped on the way.

@@ -23,6 +23,7 @@ const Case cases[] = {{"sky", "shadow.glb", "white.pfm", 256, 8}, {"room", "corn
 
 RenderSettings settings_for(const Case& c) {
     RenderSettings settings;
+    settings.method = "path";
     settings.width = settings.height = 12;
     settings.samples_per_pixel = c.samples;
     settings.max_depth = 4;
@@ -55,6 +56,30 @@ TEST_P(GuidedPath, ItsMeanIsThatOfPlainPaths) {
                   false_positive_rate)
             << scale << " " << guided.standard_error / guided.mean << " "
             << plain.standard_error / plain.mean;
+}
+
+TEST(Guide, IsMissedWhereTheMethodHasNoUseForIt) {
+    class Listener : public RenderObserver {
+      public:
+        void warning(const std::string& text) override { warnings.push_back(text); }
+        std::vector<std::string> warnings;
+    };
+    const auto warnings = [](const char* method, bool unbiased) {
+        RenderSettings settings = settings_for(cases[0]);
+        settings.method = method;
+        settings.unbiased = unbiased;
+        settings.samples_per_pixel = settings.max_depth = 1;
+        settings.guide = "field";
+        Listener listener;
+        (void)render(project_scene("cornell.glb"), settings, &listener);
+        return listener.warnings;
+    };
+    EXPECT_EQ(
+        warnings("cache", false),
+        (std::vector<std::string>{"guide: expected --method path or cache --unbiased, found cache, which "
+                                  "does not use it"}));
+    EXPECT_TRUE(warnings("cache", true).empty());
+    EXPECT_TRUE(warnings("path", false).empty());
 }
 
 }  // namespace

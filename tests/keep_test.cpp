@@ -115,6 +115,11 @@ TEST(Interruption, CacheMovesWithinAPassAndShowsWhatIsLit) {
     EXPECT_EQ(first_row.stats.samples, 36u * 16 * 16);
     for (int y : {0, 15, 16, 19})
         EXPECT_EQ(image.layer("samples")->pixels[static_cast<std::size_t>(y) * 36], y < 16 ? 16 : 0) << y;
+    ASSERT_EQ(first_row.warnings.size(), 1u);  // half a picture must not surprise anybody
+    EXPECT_EQ(first_row.warnings[0],
+              "stopped in the first pass: 144 of 720 pixels have no sample and are black; --method path has "
+              "samples everywhere sooner");
+    EXPECT_TRUE(whole.warnings.empty());
 }
 
 // ---- checkpoints that do not fit
@@ -277,6 +282,19 @@ TEST(Limits, MethodsTellWhatTheyHold) {
         const std::string message = memory_message(settings, std::uint64_t{2} << 30);
         EXPECT_NE(message.find(std::string("method ") + method), std::string::npos) << message;
     }
+}
+
+TEST(Limits, WhereTheMethodIsTooLargeAnotherIsNamedThatFits) {
+    RenderSettings settings = small_settings("cache");
+    const std::string way_out = "; --method path needs ";
+    const std::string message = memory_message(settings, std::uint64_t{30} << 20);
+    const std::size_t found = message.find(way_out);
+    ASSERT_NE(found, std::string::npos) << message;
+    const std::uint64_t needed = std::stoull(message.substr(found + way_out.size()));
+    settings.method = "path";
+    EXPECT_EQ(memory_message(settings, needed).find("expected at least"), std::string::npos);
+    EXPECT_NE(memory_message(settings, needed - 1).find("expected at least"), std::string::npos);
+    EXPECT_EQ(memory_message(settings, needed - 1).find(way_out), std::string::npos);
 }
 
 TEST(Limits, ThatMayShowBelongToTheCheckpoint) {  // what does not fit is thinned, but not for `path`

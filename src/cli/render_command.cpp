@@ -141,9 +141,11 @@ void print_summary(const Rendered& rendered, const RenderOptions& options) {
 
 void refuse_emptiness(const RenderStats& stats, const RenderOptions& options) {
     if (!stats.stopped || stats.samples > 0) return;
+    const bool signal = stats.stopped_by == "observer";
     throw Error(
-        fmt::format("{}: expected at least one sample per pixel, found a {} before it; nothing is written",
-                    options.outputs.front(), stats.stopped_by == "observer" ? "signal" : stats.stopped_by));
+        fmt::format("{}: expected at least one sample per pixel, found a {} before it; nothing is written{}",
+                    options.outputs.front(), signal ? "signal" : stats.stopped_by,
+                    signal || options.settings.method == "path" ? "" : " (--method path is sooner there)"));
 }
 
 /// Once the pictures are safe, nobody needs it.
