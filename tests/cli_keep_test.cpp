@@ -209,8 +209,8 @@ TEST(CliCheckpoint, StaysWhereThePictureCannotBeWritten) {
 
 TEST(CliLimits, TimeIsUpWithThePictureSoFarAndExitCode0) {
     const Workplace work;
-    const CommandResult result =
-        work.render({"--spp", "500000", "--time-limit", "0.5", "--stats", work.folder / "stats.json"});
+    const CommandResult result = work.render({"--method", "path", "--spp", "500000", "--time-limit", "0.5",
+                                              "--stats", work.folder / "stats.json"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const json stats = json::parse(read_bytes(work.folder / "stats.json"));
     EXPECT_EQ(stats.at("stopped_by"), "time limit");

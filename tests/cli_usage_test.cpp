@@ -79,6 +79,7 @@ TEST(Cli, HelpNamesEveryOptionAndItsDefault) {
                                "--only-sample",
                                "--isa",
                                "--reference",
+                               "(default cache)",
                                "(default 16)",
                                "(default 4096)",
                                "(default box)"})

@@ -86,6 +86,7 @@ TEST(PbrtCamera, ScreenWindowsShiftAndStretch) {
 
 RenderSettings one_sample() {
     RenderSettings settings;
+    settings.method = "path";
     settings.samples_per_pixel = 1;
     return settings;
 }

@@ -47,6 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Placements, Robustness,
 
 RenderSettings small() {
     RenderSettings settings;
+    settings.method = "path";
     settings.samples_per_pixel = 64;
     settings.width = settings.height = 36;
     settings.max_depth = 6;

@@ -17,7 +17,10 @@ import load_scenes as make
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SKY = ["--environment", str(ROOT / "scenes/sky.exr")]
-SMALL = ["--size", "512x512", "--spp", "4"]
+FRAME = ["--size", "512x512", "--spp", "4"]
+LARGE = ["--size", "7680x4320", "--spp", "1"]
+PATH, CACHE = ["--method", "path"], ["--method", "cache"]
+SMALL = FRAME + PATH
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,11 +57,11 @@ def cases(shrink: int) -> list:
         Case("500 textures, --texture-limit 256M", textures, SKY + SMALL + ["--texture-limit", "256M"]),
         Case("500 textures, --memory-limit 1G", textures, SKY + SMALL + ["--memory-limit", "1G"]),
         Case("10,000 lamps, path", lamps, SMALL),
-        Case("10,000 lamps, cache", lamps, SMALL + ["--method", "cache"]),
-        Case("picture of 7680 × 4320, path", cornell, ["--size", "7680x4320", "--spp", "1"]),
-        Case("picture of 7680 × 4320, cache", cornell, ["--size", "7680x4320", "--spp", "1", "--method", "cache"]),
-        Case("picture of 7680 × 4320, all layers", cornell, ["--size", "7680x4320", "--spp", "1", "--aov",
-                                                             "albedo,normal,position,depth,material_id,variance"]),
+        Case("10,000 lamps, cache", lamps, FRAME + CACHE),
+        Case("picture of 7680 × 4320, path", cornell, LARGE + PATH),
+        Case("picture of 7680 × 4320, cache", cornell, LARGE + CACHE),
+        Case("picture of 7680 × 4320, all layers", cornell, LARGE + PATH + ["--aov",
+                                                            "albedo,normal,position,depth,material_id,variance"]),
     ]
 
 

@@ -41,6 +41,7 @@ class Relumine:
         self.name, self.sampler = name, sampler
         self.file = pathlib.Path(args.scratch) / "relumine.pfm"
         self.command = [args.relumine, "render", str(glb), "-o", str(self.file), "--quiet", "--stats", "-",
+                        "--method", "path",
                         "--size", f"{args.size}x{args.size}", "--spp", str(args.spp), "--sampler", sampler,
                         "--max-depth", str(args.max_depth), "--masking", "separable",
                         "--threads", str(args.threads)]

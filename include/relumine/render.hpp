@@ -17,7 +17,7 @@ namespace relumine {
 
 /// How the picture is computed; every field has a sensible default. `validate(settings)` states the ranges.
 struct RenderSettings {
-    std::string method = "path";            // see render_methods()
+    std::string method = "cache";           // see render_methods(); "path" is the unbiased reference
     int samples_per_pixel = 16;             // 1 … 2²⁰ camera samples
     std::string pixel_sampling = "jitter";  // "jitter" or "center"
     std::string pixel_filter = "box";       // "box" (one pixel wide) or "blackman-harris" (3 pixels wide)

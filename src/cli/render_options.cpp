@@ -134,12 +134,12 @@ void add_method_options(CLI::App& app, RenderSettings& s) {
 }
 
 void add_cache_options(CLI::App& app, RenderSettings& s) {
-    add_number(app, {"--error", "E", "for cache: the relative error to aim at"}, s.error, "0.02");
-    app.add_flag("--unbiased", s.unbiased, "for cache: the expectation is exact, nothing is filtered");
+    add_number(app, {"--error", "E", "the relative error to aim at"}, s.error, "0.02");
+    app.add_flag("--unbiased", s.unbiased, "the expectation is exact, nothing is filtered");
     add_value(
-        app, {"--filter-residual", "on|off", "for cache: smooth what residual rays find"}, "on",
+        app, {"--filter-residual", "on|off", "smooth what residual rays find"}, "on",
         [&](const std::string& value) { s.filter_residual = parse_switch("--filter-residual", value); });
-    add_number(app, {"--residual-rays", "N", "for cache: rays per camera sample for what the maps get wrong"},
+    add_number(app, {"--residual-rays", "N", "rays per camera sample for what the maps get wrong"},
                s.residual_rays, "by --error");
 }
 
@@ -202,9 +202,10 @@ void add_options(CLI::App& app, RenderOptions& options) {
     add_output_options(app, options);
     app.option_defaults()->group("Method and sampling");
     add_sampling_options(app, options.settings);
+    app.option_defaults()->group("Quality (cache)");
+    add_cache_options(app, options.settings);
     app.option_defaults()->group("Records (reproject, reproject-mc)");
     add_record_options(app, options.settings);
-    add_cache_options(app, options.settings);
     add_method_options(app, options.settings);
     app.option_defaults()->group("Records (irradiance-cache, radiance-cache)");
     add_rival_options(app, options.settings);
@@ -253,7 +254,8 @@ void add_light_options(CLI::App& app, RenderSettings& s) {
                   refuse_planned_value("--radiance", source);
                   s.radiance = source;
               });
-    add_text(app, {"--guide", "G", "what attracts paths besides BSDFs: none, field"}, s.guide);
+    add_text(app, {"--guide", "G", "what attracts the paths of path and cache --unbiased: none, field"},
+             s.guide);
     add_number(app, {"--photons", "N", "paths from lights for caustics, beside a radiance field"}, s.photons,
                "none");
     add_text(app, {"--masking", "M", "of microfacets: correlated, separable"}, s.masking);

@@ -189,6 +189,7 @@ RenderSettings method_settings(const PictureCase& picture, RenderSettings settin
 
 RenderSettings path_settings(const PictureCase& picture) {
     RenderSettings settings = method_settings(picture, {});
+    settings.method = "path";
     settings.samples_per_pixel = picture.samples;
     settings.sampler = "independent";  // so that errors are those that the samples' variance predicts
     return settings;
