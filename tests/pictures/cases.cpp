@@ -28,6 +28,7 @@ std::vector<PictureCase> make_pictures() {
         {"indirect", "indirect.gltf", "", "light that was reflected at least twice", 512},
         {"metals", "metals.gltf", sky, "mirror, GGX of roughness .3 and .65", 128},
         {"coats", "coats.gltf", sky, "dielectric coats smooth and rough, half metal, index 1.9", 128},
+        {"layers", "layers.gltf", "", "KHR_materials_clearcoat and KHR_materials_sheen", 256},
         {"separable", "coats.gltf", sky, "--masking separable", 128,
          with([](RenderSettings& s) { s.masking = "separable"; })},
         {"specular", "specular.gltf", sky, "KHR_materials_specular: off, coloured, half", 128},
@@ -135,6 +136,7 @@ std::vector<MethodCase> make_methods() {
         {"metals", "cache", cache(false), {0.01, 0.1, 0.09}},
         {"coats", "cache --unbiased", cache(true), {0.01, 0.1, 0.09}},
         {"coats", "reproject", reproject("reproject", "radiosity"), {0.03, 0.1, 0.1}},
+        {"layers", "cache", cache(false), {0.01, 0.25, 0.09}},
         {"brushed", "gather --radiance radiosity", gather("radiosity"), {0.01, 0.08, 0.06}},
         {"brushed", "reproject", reproject("reproject", "radiosity"), {0.05, 0.5, 0.16}},
         // A block of black background and the edge of the disk: .08 to .4 off, seed by seed, as without

@@ -103,6 +103,26 @@ def coats():
     return gltf
 
 
+def layers():
+    """A room of surfaces under a clear coat, under sheen and under both."""
+
+    def coat(roughness):
+        return {"KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatRoughnessFactor": roughness}}
+
+    def sheen(colour, roughness):
+        return {"KHR_materials_sheen": {"sheenColorFactor": colour, "sheenRoughnessFactor": roughness}}
+
+    gltf = room()
+    gltf.more(0, extensions=sheen([0.3, 0.4, 0.6], 0.5))
+    gltf.more(1, extensions=coat(0.35))
+    gltf.more(2, extensions={**coat(0.6), **sheen([0.5, 0.5, 0.2], 0.7)})
+    lacquer = gltf.more(gltf.material("lacquer", (0.5, 0.3, 0.1), roughness=0.7), extensions=coat(0.3))
+    gltf.mesh("boards", [(quad((-1.3, 0.002, 1.2), (1.3, 0.002, 1.2), (1.3, 0.002, -1.2), (-1.3, 0.002, -1.2)), lacquer)])
+    car = gltf.more(gltf.material("car", (0.8, 0.5, 0.2), metallic=1, roughness=0.6), extensions=coat(0.25))
+    gltf.mesh("car", [(SPHERE, car)], translation=(0.55, 0.5, 0.3), scale=(0.8, 0.8, 0.8))
+    return gltf
+
+
 def specular():
     gltf = Gltf()
     ground(gltf)
@@ -337,7 +357,7 @@ def brushed():
 
 
 SCENES = [
-    room, glossy_room, indirect, metals, coats, specular, glass, thin_glass, wraps, texture_transform, normal_map,
+    room, glossy_room, indirect, metals, coats, layers, specular, glass, thin_glass, wraps, texture_transform, normal_map,
     rough_metal_map, brushed, alpha, vertex_colours, bright_picture, punctual, many_lights, instances, orthographic,
     mirrors
 ]
