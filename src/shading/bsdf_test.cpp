@@ -330,5 +330,18 @@ TEST(Bsdf, EvaluateIsEvalAndPdf) {
     EXPECT_GT(differences(RoughConductor{Spectrum{1}, ggx(0.3f)}, 0.1f), 50);
 }
 
+/// Rounding makes cosines a little more than 1. The sheen's fit had a root of less than nothing there.
+TEST(Bsdf, IsFiniteStraightAbove) {
+    for (const auto& [name, bsdf] : rough_bsdfs())
+        for (const float cosine : {1.0f, std::nextafter(1.0f, 2.0f), 1 + 1e-6f})
+            for (const LocalDir other : {direction(0.4f, 1), LocalDir{{0, 0, cosine}}}) {
+                const LocalDir above{{0, 0, cosine}};
+                EXPECT_TRUE(is_finite(eval(bsdf, above, other))) << name;
+                EXPECT_TRUE(is_finite(eval(bsdf, other, above))) << name;
+                EXPECT_TRUE(std::isfinite(pdf(bsdf, above, other))) << name;
+                EXPECT_TRUE(std::isfinite(pdf(bsdf, other, above))) << name;
+            }
+}
+
 }  // namespace
 }  // namespace relumine

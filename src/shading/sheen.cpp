@@ -25,7 +25,8 @@ float lambda_exponent(float x, float alpha) {
 
 float lambda(float cosine, float alpha) {
     return cosine < 0.5f ? std::exp(lambda_exponent(cosine, alpha))
-                         : std::exp(2 * lambda_exponent(0.5f, alpha) - lambda_exponent(1 - cosine, alpha));
+                         : std::exp(2 * lambda_exponent(0.5f, alpha)
+                                    - lambda_exponent(std::max(1 - cosine, 0.0f), alpha));
 }
 
 /// D·V as published, which reflects up to 1.6 times what arrives at grazing angles.
