@@ -5,9 +5,6 @@
 namespace relumine {
 namespace {
 
-/// The standard deviation of one residual ray, against MapIntegral::deviation().
-constexpr float deviation_of_one = 0.75f;
-
 /// Light samples that are well spread: variance falls with this power of their number.
 constexpr float light_power = 1.3f;
 
@@ -34,6 +31,7 @@ RayDemand ray_demand(const RenderSettings& s) {
     const bool filters = s.filter_residual && !s.unbiased;
     demand.residual_gain = filters ? 2.6f : gain_without_filter;
     demand.light_gain = filters ? 1.0f : 0.5f;
+    demand.least_residual = std::max(1.0f, power_of_two(0.32f / s.error, 1));
     demand.pilot = std::clamp(power_of_two(0.08f / s.error, 1), 2.0f, 16.0f);
     return demand;
 }
@@ -41,7 +39,12 @@ RayDemand ray_demand(const RenderSettings& s) {
 }  // namespace
 
 float RayDemand::residual_rays(float doubt) const {
-    return std::max(1.0f, power_of_two(sqr(deviation_of_one * doubt / (sigma * residual_gain)), 1));
+    return std::max(least_residual, power_of_two(sqr(deviation_of_one * doubt / (sigma * residual_gain)), 1));
+}
+
+float RayDemand::more_residual(float scatter, float before) {
+    constexpr float tolerated = 1.5f, most = 8;
+    return power_of_two((std::min(scatter / tolerated, most) - 1) * before, before);
 }
 
 float RayDemand::more_light(float noise) const {

@@ -8,16 +8,23 @@
 
 namespace relumine {
 
+/// The standard deviation of one residual ray, against MapIntegral::deviation(), that is expected.
+inline constexpr float deviation_of_one = 0.75f;
+
 /// How rays follow the expected error of a pixel; all counts are of all its samples together, powers of two.
 struct RayDemand {
     bool residual_adapts = false, light_adapts = false;
-    float sigma = 0;          // of a pixel, relative: that is aimed at
-    float residual_gain = 1;  // how much better a pixel gets than its own residual rays make it
-    float light_gain = 1;     // the same of light samples
-    float pilot = 0;          // light samples before anything is known
+    float sigma = 0;           // of a pixel, relative: that is aimed at
+    float residual_gain = 1;   // how much better a pixel gets than its own residual rays make it
+    float light_gain = 1;      // the same of light samples
+    float least_residual = 1;  // whatever the maps' doubt
+    float pilot = 0;           // light samples before anything is known
 
     /// For a pixel whose maps may be wrong by `doubt`, relative to what it shines: MapIntegral::deviation().
     [[nodiscard]] float residual_rays(float doubt) const;
+    /// Beside `before`, which are these, for a pixel whose rays scatter so many times more than was expected:
+    /// in proportion, not by the square, or few pixels would take most of a picture's time.
+    [[nodiscard]] static float more_residual(float scatter, float before);
     /// Beside the pilot's, for a pixel whose pilot has a relative standard deviation of `noise`.
     [[nodiscard]] float more_light(float noise) const;
 };

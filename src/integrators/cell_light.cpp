@@ -54,15 +54,74 @@ class CellLight {
 
     /// Map integrals and residual rays; what those find is there at the end.
     void add_maps() {
-        for (int y = cell_.rect.y0; y < cell_.rect.y1; y += quad_pixels)
-            for (int x = cell_.rect.x0; x < cell_.rect.x1; x += quad_pixels)
-                light_quad(intersection({x, y, x + quad_pixels, y + quad_pixels}, cell_.rect));
+        for_each_quad([&](const PixelRect& quad) { light_quad(quad); });
         const StepTimer timer(counts_, CacheStep::product);
         estimator_.finish();
         for (LitSample& sample : cell_.samples) sample.sampled.light.join(sample.more_light);
     }
 
+    /// More residual rays where the first ones scatter by more than is wanted.
+    void add_more() {
+        if (!plan_.demand.residual_adapts || !(plan_.rays.residual > 0)) return;
+        demand_more();
+        for_each_quad([&](const PixelRect& quad) {
+            if (wants_more(quad)) light_quad(quad);
+        });
+        const StepTimer timer(counts_, CacheStep::product);
+        estimator_.finish();
+        for (LitSample& sample : cell_.samples) sample.sampled.residual.join(sample.more_residual);
+    }
+
   private:
+    template <typename Use>
+    void for_each_quad(const Use& use) {
+        for (int y = cell_.rect.y0; y < cell_.rect.y1; y += quad_pixels)
+            for (int x = cell_.rect.x0; x < cell_.rect.x1; x += quad_pixels)
+                use(intersection({x, y, x + quad_pixels, y + quad_pixels}, cell_.rect));
+    }
+
+    /// What is asked for by what the first residual rays have found.
+    void demand_more() {
+        const StepTimer timer(counts_, CacheStep::product);
+        const std::vector<PilotResidual> pilots = residual_pilots();
+        const ResidualScatter scatter(pilots);
+        for (const PilotResidual& pilot : pilots)
+            more_.push_back(pilot.samples > 0 ? more_rays(pilot, scatter.without(pilot)) : 0);
+        for (LitSample& sample : cell_.samples) sample.done = !has_residual(sample);
+    }
+
+    static bool has_residual(const LitSample& sample) { return sample.sampled.residual.rays > 0; }
+
+    [[nodiscard]] std::vector<PilotResidual> residual_pilots() const {
+        std::vector<PilotResidual> pilots(cell_.pilots.size());
+        for (std::size_t i = 0; i < cell_.samples.size(); ++i) {
+            const LitSample& sample = cell_.samples[i];
+            if (has_residual(sample))
+                pilots[i / cell_.per_pixel].add(sample.sampled.residual, deviation_of_one * sample.deviation,
+                                                *sample.pixel->point);
+        }
+        return pilots;
+    }
+
+    /// Beside the first, for each sample of a pixel.
+    [[nodiscard]] float more_rays(const PilotResidual& pilot, float scatter) const {
+        const float before = pilot.rays * plan_.pixel_samples / pilot.samples;
+        return RayDemand::more_residual(scatter, before) / plan_.pixel_samples;
+    }
+
+    [[nodiscard]] float more(int x, int y) const {
+        return more_[static_cast<std::size_t>((y - cell_.rect.y0) * cell_.rect.width() + x - cell_.rect.x0)];
+    }
+
+    [[nodiscard]] bool wants_more(const PixelRect& quad) const {
+        for (int y = quad.y0; y < quad.y1; ++y)
+            for (int x = quad.x0; x < quad.x1; ++x)
+                if (more(x, y) > 0) return true;
+        return false;
+    }
+
+    [[nodiscard]] bool in_second_series() const { return !more_.empty(); }
+
     void add_pilot(LitSample& sample) {
         const ShadingPoint& point = *sample.pixel->point;
         sample.delta = delta_light(source_.transport, point.vertex,
@@ -82,7 +141,7 @@ class CellLight {
         sample.bsdf = *receiver_bsdf(point.vertex, map_frame);
         const RayDemand& demand = plan_.demand;
         const float rays = demand.light_adapts ? demand.pilot / plan_.pixel_samples : plan_.rays.light;
-        estimator_.add_light(point, sample.pixel->stream, rays, LightSeries::first, sample.sampled.light);
+        estimator_.add_light(point, sample.pixel->stream, rays, RaySeries::first, sample.sampled.light);
     }
 
     static ShadingPoint without(const SharpLobes& lobes, ShadingPoint point) {
@@ -107,10 +166,15 @@ class CellLight {
                         gather(first);
                         continue;
                     }
+                    const bool stands_alone = blend.smallest_block() < quad_shares;
+                    if (in_second_series() && stands_alone && !(more(x, y) > 0)) {
+                        first.done = true;
+                        continue;
+                    }
                     integrate(first, blend);
                     const StepTimer timer(counts_, CacheStep::product);
                     light_own(x, y);
-                    if (blend.smallest_block() >= quad_shares) light_others(quad, x, y);
+                    if (!stands_alone) light_others(quad, x, y);
                 }
     }
 
@@ -162,6 +226,10 @@ class CellLight {
         std::optional<RayBudget> budget;
         for (LitSample& sample : cell_.at(x, y)) {
             if (!waits(sample) || !which(sample)) continue;
+            if (in_second_series()) {
+                light_more(sample, level, more(x, y));
+                continue;
+            }
             if (!budget) budget = budget_of(sample, cell_.expected(x, y));
             light(sample, level, *budget);
         }
@@ -183,16 +251,31 @@ class CellLight {
         add_lobes(lobes, sample);
     }
 
+    /// By the same integral again, since the same samples are lit in the same order.
+    void light_more(LitSample& sample, float level, float rays) {
+        sample.done = true;
+        if (!(rays > 0)) return;
+        const Spectrum scale = shared_.give(level, sample);
+        ShadingPoint point = *sample.pixel->point;
+        if (sample.lobes) point = without(*sharp_lobes(point.vertex.bsdf, plan_.sharp_alpha), point);
+        add_residual(point, sample, scale, level, rays, RaySeries::second, sample.more_residual);
+    }
+
     /// `point`: the sample's, without sharp lobes; `scale`, `level`: of its integral and radiance, against
     /// those shared.
     void add_rays(const ShadingPoint& point, LitSample& sample, Spectrum scale, float level,
                   const RayBudget& budget) {
         const SampleStream& stream = sample.pixel->stream;
-        estimator_.add(
-            {point, stream, shared_.integral(), shared_.distribution(), scale, level, budget.residual,
-             meets_lights(sample) ? sharp_bsdf_share : usual_bsdf_share, plan_.exact},
-            sample.sampled);
-        estimator_.add_light(point, stream, budget.light, LightSeries::second, sample.more_light);
+        add_residual(point, sample, scale, level, budget.residual, RaySeries::first, sample.sampled.residual);
+        estimator_.add_cones(point, stream, sample.sampled.cones);
+        estimator_.add_light(point, stream, budget.light, RaySeries::second, sample.more_light);
+    }
+
+    void add_residual(const ShadingPoint& point, const LitSample& sample, Spectrum scale, float level,
+                      float rays, RaySeries series, FoundResidual& sum) {
+        estimator_.add({point, sample.pixel->stream, shared_.integral(), shared_.distribution(), scale, level,
+                        rays, meets_lights(sample) ? sharp_bsdf_share : usual_bsdf_share, plan_.exact},
+                       series, sum);
     }
 
     static bool has_nothing_but_lobes(const LitSample& sample) {
@@ -247,6 +330,7 @@ class CellLight {
     SharedIntegral shared_;
     RayCounts& rays_;
     CacheCounts& counts_;
+    std::vector<float> more_;  // residual rays of the second series, by pixel
 };
 
 LitCell dark_cell(const CellRow& row, const PixelRect& rect) {
@@ -264,6 +348,7 @@ LitCell light_cell(const CellLightSource& source, const CellRow& row, const Pixe
     CellLight light(source, maps, cell, rays, counts);
     light.add_pilot(row);
     light.add_maps();
+    light.add_more();
     return cell;
 }
 

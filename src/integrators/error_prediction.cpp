@@ -29,15 +29,15 @@ float sources_of(float mean, float mean_square, float variance_left) {
 void DoubtSum::add(const SampledRadiance& found, const SampledRadiance& lobes, Spectrum throughput,
                    Spectrum light, Spectrum albedo, float deviation) {
     const float factor = luminance(throughput), l = luminance(light);
-    residual_.add(found.residual_noise, factor);
-    cone_.add(found.cone_noise, factor);
+    residual_.add(found.residual.noise, factor);
+    cone_.add(found.cones.noise, factor);
     light_.add(found.light.noise, factor);
-    hit_.add(found.hit_noise, factor);
-    lobe_.add(lobes.residual_noise, factor);
+    hit_.add(found.residual.bright_noise, factor);
+    lobe_.add(lobes.residual.noise, factor);
     mirrored_light_.add(found.light.mirrored_noise, factor);
     mirrored_light_.add(lobes.light.noise, factor);
-    mirrored_hit_.add(found.mirrored_noise, factor);
-    mirrored_hit_.add(lobes.hit_noise, factor);
+    mirrored_hit_.add(found.residual.mirrored_noise, factor);
+    mirrored_hit_.add(lobes.residual.bright_noise, factor);
     albedo_ += luminance(throughput * albedo);
     deviation_ += factor * deviation;
     samples_ += 1;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "integrators/cache_plan.hpp"
 
 namespace relumine {
@@ -72,9 +74,10 @@ TEST(RayDemand, GrowsWithTheDoubtAndTheWantedPrecision) {
         return cache_plan(settings).demand.residual_rays(doubt);
     };
     EXPECT_EQ(residual(0.5f, 0.01f), 1);
-    EXPECT_EQ(residual(0.02f, 0), 1);
+    EXPECT_EQ(residual(0.02f, 0), 16);
+    EXPECT_EQ(residual(0.01f, 0), 32);
     EXPECT_EQ(residual(0.01f, 0.5f), 4 * residual(0.02f, 0.5f));
-    EXPECT_EQ(residual(0.02f, 0.5f), 16 * residual(0.02f, 0.125f));
+    EXPECT_EQ(residual(0.02f, 0.5f), residual(0.02f, 2) / 16);
     EXPECT_EQ(residual(0.0005f, 100), 4096);
     settings.unbiased = true;
     EXPECT_GT(cache_plan(settings).demand.residual_rays(1), 0);
@@ -89,6 +92,50 @@ TEST(RayDemand, AddsLightSamplesWhereTheyScatter) {
     EXPECT_GE(demand.more_light(0.5f), 16 * demand.pilot);
     settings.light_samples = settings.residual_rays = 7;
     EXPECT_FALSE(cache_plan(settings).demand.light_adapts || cache_plan(settings).demand.residual_adapts);
+}
+
+/// Of one camera sample with four rays, of which one finds `found` and the others nothing; `expected` of one.
+PilotResidual residual_pilot(const Material& seen, float found, float expected) {
+    FoundResidual residual;
+    residual.rays = residual.noise.rays = 4;
+    residual.noise.count(false, found / 4);
+    ShadingPoint point;
+    point.path.throughput = Spectrum{1};
+    point.vertex.point.material = &seen;
+    PilotResidual pilot;
+    pilot.add(residual, expected, point);
+    return pilot;
+}
+
+TEST(ResidualScatter, ComparesWhatIsFoundWithWhatWasExpected) {
+    const Material matte;
+    const std::vector<PilotResidual> cell(9, residual_pilot(matte, 4, 1));
+    const float of_one = std::sqrt(4.0f);  // 16/4 of squares, (4/4)² of the mean, by 4/3: a variance of 4
+    EXPECT_NEAR(ResidualScatter(cell).without(cell[0]), of_one, 1e-5f);
+    const std::vector<PilotResidual> calm(9, residual_pilot(matte, 4, 8));
+    EXPECT_NEAR(ResidualScatter(calm).without(calm[0]), of_one / 8, 1e-5f);
+}
+
+TEST(ResidualScatter, LeavesItsOwnAndOtherSurfacesOut) {
+    const Material matte, metal;
+    std::vector<PilotResidual> cell(9, residual_pilot(matte, 4, 1));
+    const float before = ResidualScatter(cell).without(cell[4]);
+    cell[4] = residual_pilot(matte, 4e3f, 1);
+    cell.push_back(residual_pilot(metal, 4e3f, 1));
+    const ResidualScatter scatter(cell);
+    EXPECT_NEAR(scatter.without(cell[4]), before, 1e-4f);
+    EXPECT_GT(scatter.without(cell[0]), 100);
+    EXPECT_EQ(scatter.without(cell.back()), 1);  // nobody else knows
+}
+
+TEST(ResidualScatter, AsksForRaysInProportion) {
+    EXPECT_EQ(RayDemand::more_residual(1, 32), 0);
+    EXPECT_EQ(RayDemand::more_residual(2, 32), 0);
+    const float three = RayDemand::more_residual(3, 32), five = RayDemand::more_residual(7.5f, 32);
+    EXPECT_EQ(three, 32);
+    EXPECT_EQ(five, 4 * three);
+    EXPECT_LE(RayDemand::more_residual(1e6f, 32), 8 * 32);
+    EXPECT_EQ(RayDemand::more_residual(std::numeric_limits<float>::quiet_NaN(), 32), 0);
 }
 
 }  // namespace

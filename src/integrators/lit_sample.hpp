@@ -18,11 +18,12 @@ struct LitSample {
     SplitRadiance reflected;           // of the maps' radiance
     Spectrum delta;                    // of lights without size
     SampledRadiance sampled;           // what residual and shadow rays add
-    FoundLight more_light;             // of the second series, until it joins `sampled`
-    Spectrum albedo;                   // directional
-    float deviation = 0;               // that the maps' light may be off by, luminance
-    float maps = 0;                    // that were blended
-    bool done = false;                 // has its integral
+    FoundLight more_light;             // of the second series, until these join `sampled`
+    FoundResidual more_residual;
+    Spectrum albedo;      // directional
+    float deviation = 0;  // that the maps' light may be off by, luminance
+    float maps = 0;       // that were blended
+    bool done = false;    // has its integral
 };
 
 /// The samples of a cell on their way.

@@ -38,8 +38,9 @@ class Mirroring {
 namespace {
 
 constexpr std::uint64_t residual_purpose = 0x7265736964, light_purpose = 0x6272696768,
-                        second_light_purpose = 0x6c69676874, cone_purpose = 0x636f6e65,
-                        lobe_purpose = 0x6c6f6265, lobe_light_purpose = 0x6c6f62656c;
+                        second_light_purpose = 0x6c69676874, second_residual_purpose = 0x6d6f7265,
+                        cone_purpose = 0x636f6e65, lobe_purpose = 0x6c6f6265,
+                        lobe_light_purpose = 0x6c6f62656c;
 
 float bsdf_share(const IntegratedPoint& point) { return point.distribution.empty() ? 1 : point.bsdf_share; }
 
@@ -100,21 +101,49 @@ void for_each_ray(float rays, const SampleStream& stream, std::uint64_t purpose,
 
 }  // namespace
 
-void FoundLight::join(const FoundLight& other) {
-    const float all = rays + other.rays;
-    if (!(all > 0)) return;
-    const float here = rays / all, there = other.rays / all;
-    radiance = radiance * here + other.radiance * there;
-    mirrored = mirrored * here + other.mirrored * there;
-    const auto joined = [&](const RayNoise& a, const RayNoise& b) {
+namespace {
+
+/// Makes a mean of two.
+class Joining {
+  public:
+    Joining(float rays, float other_rays)
+        : here_(rays / (rays + other_rays)), there_(other_rays / (rays + other_rays)) {}
+
+    void operator()(Spectrum& a, Spectrum b) const { a = a * here_ + b * there_; }
+    void operator()(RayNoise& a, const RayNoise& b) const {
         RayNoise sum;
-        sum.add(a, here);
-        sum.add(b, there);
-        return sum;
-    };
-    noise = joined(noise, other.noise);
-    mirrored_noise = joined(mirrored_noise, other.mirrored_noise);
-    rays = all;
+        sum.add(a, here_);
+        sum.add(b, there_);
+        a = sum;
+    }
+
+  private:
+    float here_, there_;
+};
+
+}  // namespace
+
+void FoundLight::join(const FoundLight& other) {
+    if (!(other.rays > 0)) return;
+    const Joining join(rays, other.rays);
+    join(radiance, other.radiance);
+    join(mirrored, other.mirrored);
+    join(noise, other.noise);
+    join(mirrored_noise, other.mirrored_noise);
+    rays += other.rays;
+}
+
+void FoundResidual::join(const FoundResidual& other) {
+    if (!(other.rays > 0)) return;
+    const Joining join(rays, other.rays);
+    join(dim.direct, other.dim.direct);
+    join(dim.indirect, other.dim.indirect);
+    join(bright, other.bright);
+    join(mirrored, other.mirrored);
+    join(noise, other.noise);
+    join(bright_noise, other.bright_noise);
+    join(mirrored_noise, other.mirrored_noise);
+    rays += other.rays;
 }
 
 /// The bright surfaces as the point sees them, and how light samples are divided between them and the lights.
@@ -129,26 +158,31 @@ void ResidualEstimator::see_cones(const ShadingPoint& x) {
     if (!cones) cone_budget_ = 0;
 }
 
-void ResidualEstimator::add(const IntegratedPoint& point, SampledRadiance& sum) {
+void ResidualEstimator::add(const IntegratedPoint& point, RaySeries series, FoundResidual& sum) {
     see_cones(point.x);
-    if (point.rays > 0) {
-        const Mirroring mirroring(point.x.vertex);
-        for_each_ray(point.rays, point.stream, residual_purpose, sum.residual_noise,
-                     [&](const SampleStream& stream) { add_residual(point, mirroring, stream, sum); });
-    }
-    if (cone_budget_ > 0)
-        for_each_ray(cone_budget_, point.stream, cone_purpose, sum.cone_noise,
-                     [&](const SampleStream& stream) { add_cone(point, stream, sum); });
-    sum.hit_noise.rays = sum.mirrored_noise.rays = sum.residual_noise.rays;
+    if (!(point.rays > 0)) return;
+    sum.rays = point.rays;
+    const Mirroring mirroring(point.x.vertex);
+    for_each_ray(point.rays, point.stream,
+                 series == RaySeries::first ? residual_purpose : second_residual_purpose, sum.noise,
+                 [&](const SampleStream& stream) { add_residual(point, mirroring, stream, sum); });
+    sum.bright_noise.rays = sum.mirrored_noise.rays = sum.noise.rays;
+}
+
+void ResidualEstimator::add_cones(const ShadingPoint& x, const SampleStream& stream, FoundCones& sum) {
+    see_cones(x);
+    if (!(cone_budget_ > 0)) return;
+    for_each_ray(cone_budget_, stream, cone_purpose, sum.noise,
+                 [&](const SampleStream& drawn) { add_cone(x, drawn, sum); });
 }
 
 void ResidualEstimator::add_light(const ShadingPoint& x, const SampleStream& stream, float rays,
-                                  LightSeries series, FoundLight& sum) {
+                                  RaySeries series, FoundLight& sum) {
     see_cones(x);
     if (!(light_budget_ > 0) || !(rays > 0)) return;
     sum.rays = rays * light_budget_ / settings_.budget.light;
     const Mirroring mirroring(x.vertex);
-    for_each_ray(sum.rays, stream, series == LightSeries::first ? light_purpose : second_light_purpose,
+    for_each_ray(sum.rays, stream, series == RaySeries::first ? light_purpose : second_light_purpose,
                  sum.noise,
                  [&](const SampleStream& drawn) { add_light_sample(x, mirroring, drawn, sum.rays, sum); });
     sum.mirrored_noise.rays = sum.noise.rays;
@@ -182,7 +216,7 @@ void ResidualEstimator::wait_for(std::uint32_t depth) {
 }
 
 void ResidualEstimator::add_residual(const IntegratedPoint& point, const Mirroring& mirroring,
-                                     const SampleStream& stream, SampledRadiance& sum) {
+                                     const SampleStream& stream, FoundResidual& sum) {
     const Vertex& vertex = point.x.vertex;
     const std::uint32_t depth = point.x.path.depth;
     wait_for(depth);
@@ -256,10 +290,10 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
         residual.indirect +=
             drawn.bsdf * found.indirect
             * (mis_weight(drawn.usual_bsdf_density, drawn.cone_density) / drawn.bsdf_density);
-    SampledRadiance& sum = *drawn.sum;
-    sum.residual.direct += residual.direct;
-    sum.residual.indirect += residual.indirect;
-    sum.residual_noise.count(drawn.second_half, luminance(residual.direct + residual.indirect));
+    FoundResidual& sum = *drawn.sum;
+    sum.dim.direct += residual.direct;
+    sum.dim.indirect += residual.indirect;
+    sum.noise.count(drawn.second_half, luminance(residual.direct + residual.indirect));
     if (!(bright.share > 0 && drawn.bsdf_density > 0)) return;
     const Spectrum shining =
         drawn.bsdf * found.direct
@@ -268,7 +302,7 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
     const Spectrum mirrored = shining * drawn.mirrors, rest = shining - mirrored;
     sum.bright += rest;
     sum.mirrored += mirrored;
-    sum.hit_noise.count(drawn.second_half, luminance(rest));
+    sum.bright_noise.count(drawn.second_half, luminance(rest));
     sum.mirrored_noise.count(drawn.second_half, luminance(mirrored));
 }
 
@@ -301,16 +335,17 @@ void ResidualEstimator::add_light_ray(const ShadingPoint& x, const SampleStream&
 
 void ResidualEstimator::add_lobes(const LobePoint& point, SampledRadiance& sum) {
     const float light_rays = settings_.budget.light > 0 && !settings_.split.empty() ? point.rays : 0;
-    for_each_ray(point.rays, point.stream, lobe_purpose, sum.residual_noise,
-                 [&](const SampleStream& stream) { add_lobe_ray(point, light_rays, stream, sum); });
-    sum.hit_noise.rays = sum.residual_noise.rays;
+    FoundResidual& met = sum.residual;
+    for_each_ray(point.rays, point.stream, lobe_purpose, met.noise,
+                 [&](const SampleStream& stream) { add_lobe_ray(point, light_rays, stream, met); });
+    met.bright_noise.rays = met.noise.rays;
     if (!(light_rays > 0)) return;
     for_each_ray(light_rays, point.stream, lobe_light_purpose, sum.light.noise,
                  [&](const SampleStream& stream) { add_lobe_light(point, stream, sum.light); });
 }
 
 void ResidualEstimator::add_lobe_ray(const LobePoint& point, float light_rays, const SampleStream& stream,
-                                     SampledRadiance& sum) {
+                                     FoundResidual& sum) {
     const ShadingPoint& x = point.x;
     wait_for(x.path.depth);
     const std::optional<WorldDir> direction = draw_from(point.lobes.drawn, x, stream);
@@ -357,10 +392,9 @@ void ResidualEstimator::trace_light() {
     light_count_ = 0;
 }
 
-void ResidualEstimator::add_cone(const IntegratedPoint& point, const SampleStream& stream,
-                                 SampledRadiance& sum) {
-    const Vertex& vertex = point.x.vertex;
-    const std::uint32_t depth = point.x.path.depth;
+void ResidualEstimator::add_cone(const ShadingPoint& x, const SampleStream& stream, FoundCones& sum) {
+    const Vertex& vertex = x.vertex;
+    const std::uint32_t depth = x.path.depth;
     const ConeSample drawn = sample(cones_, stream.next2(Dim::direction, depth));
     const BsdfValue bsdf = value_towards(vertex, drawn.direction);
     if (is_black(bsdf.value)) return;
@@ -390,8 +424,8 @@ void ResidualEstimator::trace_cones() {
     for (std::size_t lane = 0; lane < cone_count_; ++lane) {
         if (cone_rays_[lane].t_max < 0) continue;
         const Spectrum reflected = cone_[lane].weight * found[lane].indirect;
-        cone_[lane].sum->residual.indirect += reflected;
-        cone_[lane].sum->cone_noise.count(cone_[lane].second_half, luminance(reflected));
+        cone_[lane].sum->indirect += reflected;
+        cone_[lane].sum->noise.count(cone_[lane].second_half, luminance(reflected));
     }
     cone_count_ = 0;
 }

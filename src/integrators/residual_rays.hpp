@@ -25,16 +25,33 @@ struct FoundLight {
     /// Makes one of two series, weighed by their rays, which must not depend on what they have found.
     void join(const FoundLight& other);
 };
+/// What a series of residual rays has found.
+struct FoundResidual {
+    MapRadiance dim;            // true radiance less what the maps hold
+    Spectrum bright, mirrored;  // light that was met, as in FoundLight
+    RayNoise noise, bright_noise, mirrored_noise;
+    float rays = 0;  // that the camera sample got on average
+
+    /// As that of FoundLight.
+    void join(const FoundResidual& other);
+};
+
+/// What rays towards bright surfaces have found.
+struct FoundCones {
+    Spectrum indirect;
+    RayNoise noise;
+};
+
 /// Successive series of a point draw other samples.
-enum class LightSeries : std::uint8_t { first, second };
+enum class RaySeries : std::uint8_t { first, second };
 
 /// What is added to MapIntegral::reflected().
 struct SampledRadiance {
-    MapRadiance residual;                 // true dim radiance less what the maps hold
-    Spectrum bright, mirrored;            // bright light that residual rays have met, as in FoundLight
-    FoundLight light;                     // the rest of it
-    RayNoise residual_noise, cone_noise;  // of `residual`, by kind of ray
-    RayNoise hit_noise, mirrored_noise;   // of `bright` and `mirrored`
+    FoundResidual residual;
+    FoundCones cones;
+    FoundLight light;
+
+    [[nodiscard]] Spectrum dim_indirect() const { return residual.dim.indirect + cones.indirect; }
 };
 
 /// What residual rays are drawn and judged with.
@@ -84,11 +101,12 @@ class ResidualEstimator {
     ResidualEstimator(const ResidualSettings& settings, RayCounts& counts)
         : settings_(settings), counts_(counts) {}
 
-    /// Draws residual rays of a point and rays towards bright surfaces; `sum` has all that they find after
-    /// finish().
-    void add(const IntegratedPoint& point, SampledRadiance& sum);
+    /// Draws residual rays of a point; `sum` has all that they find after finish().
+    void add(const IntegratedPoint& point, RaySeries series, FoundResidual& sum);
+    /// The same of the usual number of rays towards bright surfaces.
+    void add_cones(const ShadingPoint& x, const SampleStream& stream, FoundCones& sum);
     /// The same of a point's light samples: `rays` on average.
-    void add_light(const ShadingPoint& x, const SampleStream& stream, float rays, LightSeries series,
+    void add_light(const ShadingPoint& x, const SampleStream& stream, float rays, RaySeries series,
                    FoundLight& sum);
     /// All that sharp lobes reflect, in the same way: nothing is held.
     void add_lobes(const LobePoint& point, SampledRadiance& sum);
@@ -96,7 +114,7 @@ class ResidualEstimator {
 
   private:
     struct ResidualRay {
-        SampledRadiance* sum = nullptr;
+        FoundResidual* sum = nullptr;
         bool second_half = false;  // of its sequence
         std::uint32_t texel = 0;
         Spectrum bsdf;                 // f·|cos θ|; black where the surface is in the way
@@ -116,7 +134,7 @@ class ResidualEstimator {
         float mirrors = 0;   // share of it that is glossy lobes
     };
     struct ConeRay {
-        SampledRadiance* sum = nullptr;
+        FoundCones* sum = nullptr;
         bool second_half = false;
         Spectrum weight;  // of the radiance that bright surfaces reflect
     };
@@ -134,17 +152,17 @@ class ResidualEstimator {
     };
 
     void add_residual(const IntegratedPoint& point, const Mirroring& mirroring, const SampleStream& stream,
-                      SampledRadiance& sum);
+                      FoundResidual& sum);
     void add_light_sample(const ShadingPoint& x, const Mirroring& mirroring, const SampleStream& stream,
                           float rays, FoundLight& sum);
     void add_lobe_ray(const LobePoint& point, float light_rays, const SampleStream& stream,
-                      SampledRadiance& sum);
+                      FoundResidual& sum);
     void add_lobe_light(const LobePoint& point, const SampleStream& stream, FoundLight& sum);
     template <typename Reflect, typename Mirrors>
     void add_light_ray(const ShadingPoint& x, const SampleStream& stream, const LightDensities& drawn,
                        const Reflect& reflect, const Mirrors& mirrors, FoundLight& sum);
     void wait_for(std::uint32_t depth);
-    void add_cone(const IntegratedPoint& point, const SampleStream& stream, SampledRadiance& sum);
+    void add_cone(const ShadingPoint& x, const SampleStream& stream, FoundCones& sum);
     void see_cones(const ShadingPoint& x);
     [[nodiscard]] static std::optional<Drawn> draw(const IntegratedPoint& point, const SampleStream& stream);
     /// For weights between strategies: a fixed share, or light samples that come before would need the maps.
