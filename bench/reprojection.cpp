@@ -58,7 +58,7 @@ constexpr int every = 251;
 Picture make_picture(const RenderSetup& setup, const RenderSettings& settings) {
     RayCounts rays;
     const PixelRect& window = setup.view.window;
-    const GBuffer pixels(setup.transport, setup.view, window, 0, depth_limit(settings), false, 1, rays);
+    const GBuffer pixels(setup.transport, setup.view, window, 0, {depth_limit(settings)}, false, 1, rays);
     const auto point_at = [&](int x, int y) {
         const GBufferPixel& pixel = pixels.at(x, y);
         return pixel.reflects_alone ? &pixel.cache : nullptr;

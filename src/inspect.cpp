@@ -88,7 +88,7 @@ class Inspector {
 
   private:
     void place() {
-        const GBuffer points(setup_.transport, setup_.view, placement_region(setup_.view, 0), 0, max_depth_,
+        const GBuffer points(setup_.transport, setup_.view, placement_region(setup_.view, 0), 0, {max_depth_},
                              false, threads_, rays_);
         p_.pixel = points.at(p_.x, p_.y);
         check_pixel(p_.pixel, p_.x, p_.y);

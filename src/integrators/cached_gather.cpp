@@ -84,7 +84,8 @@ class CachedGather final : public Integrator {
     void prepare(Preparation& p) override {
         if (per_tile_) return;
         gbuffer_ = std::make_unique<GBuffer>(transport_, view_, placement_region(view_, p.first_sample),
-                                             p.first_sample, max_depth_, surface_layers_, p.threads, p.rays);
+                                             p.first_sample, PrefixSettings{max_depth_}, surface_layers_,
+                                             p.threads, p.rays);
         passing_ = RadianceCache(static_cast<std::uint32_t>(kept_.size()));
         const bool first = p.first_sample == 0;
         PlacementRun run{p.threads, p.stop, {}, {}, first ? room_ : room_for_passing_};
@@ -125,7 +126,8 @@ class CachedGather final : public Integrator {
                                              {0, 0, view_.width, view_.height});
         for (std::uint32_t sample = tile.first_sample; sample < tile.first_sample + tile.sample_count;
              ++sample) {
-            const GBuffer points(transport_, view_, whole, sample, max_depth_, surface_layers_, 1, tile.rays);
+            const GBuffer points(transport_, view_, whole, sample, {max_depth_}, surface_layers_, 1,
+                                 tile.rays);
             OwnCache own{RadianceCache{}, room_};
             for (int y = whole.y0; y < whole.y1; ++y)
                 for (int x = whole.x0; x < whole.x1; ++x) {

@@ -83,8 +83,8 @@ CellRow CellRows::traced(int y, Preparation& p) const {
     if (row.rect.y0 >= row.rect.y1) return row;
     for (std::uint32_t s = p.first_sample; s < p.first_sample + p.sample_count; ++s)
         row.samples.push_back(std::make_unique<GBuffer>(source_.transport, view, row.rect, s,
-                                                        source_.max_depth, source_.surface_layers, p.threads,
-                                                        p.rays));
+                                                        PrefixSettings{source_.max_depth, plan_.sharp_alpha},
+                                                        source_.surface_layers, p.threads, p.rays));
     row.records.resize(static_cast<std::size_t>((row.rect.width() + cell_pixels - 1) / cell_pixels));
     BlockSettings blocks = plan_.blocks;
     blocks.samples_per_pixel = static_cast<int>(p.sample_count);

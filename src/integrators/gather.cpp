@@ -33,7 +33,7 @@ class Gather final : public Integrator {
   private:
     SplitRadiance outgoing_radiance(const CameraSample& s, RayCounts& rays) const {
         SplitRadiance sum;
-        const std::optional<ShadingPoint> x = follow_prefix(transport_, s, max_depth_, sum.emission, rays);
+        const std::optional<ShadingPoint> x = follow_prefix(transport_, s, {max_depth_}, sum.emission, rays);
         if (!x) return sum;
         const SplitRadiance gathered = estimate_.reflected(*x, s.stream, rays);
         const Spectrum delta =

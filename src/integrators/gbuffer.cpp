@@ -21,11 +21,11 @@ CachePoint cache_point(const View& view, const CameraSample& s, const ShadingPoi
             hash(s.stream.key, s.stream.index, 0x7265636f7264)};
 }
 
-GBufferPixel pixel_of(const Transport& t, const View& view, const CameraSample& s, std::uint32_t max_depth,
-                      bool surface_layers, RayCounts& rays) {
+GBufferPixel pixel_of(const Transport& t, const View& view, const CameraSample& s,
+                      const PrefixSettings& prefix, bool surface_layers, RayCounts& rays) {
     GBufferPixel pixel;
     pixel.stream = s.stream;
-    pixel.point = follow_prefix(t, s, max_depth, pixel.emission, rays);
+    pixel.point = follow_prefix(t, s, prefix, pixel.emission, rays);
     if (surface_layers) pixel.surface = first_surface(t, s);
     if (!pixel.point) return pixel;
     pixel.reflects_alone = receiver_bsdf(pixel.point->vertex, pixel.point->vertex.point.frame).has_value();
@@ -53,7 +53,7 @@ float pixel_footprint(const View& view, int x, int y, float distance) {
 }
 
 GBuffer::GBuffer(const Transport& t, const View& view, const PixelRect& region, std::uint32_t sample,
-                 std::uint32_t max_depth, bool surface_layers, int threads, RayCounts& rays)
+                 const PrefixSettings& prefix, bool surface_layers, int threads, RayCounts& rays)
     : region_(region),
       pixels_(static_cast<std::size_t>(region.width()) * static_cast<std::size_t>(region.height())) {
     const std::vector<PixelRect> blocks = blocks_of(region);
@@ -66,7 +66,7 @@ GBuffer::GBuffer(const Transport& t, const View& view, const PixelRect& region, 
                     pixels_[static_cast<std::size_t>(s.y - region_.y0)
                                 * static_cast<std::size_t>(region_.width())
                             + static_cast<std::size_t>(s.x - region_.x0)] =
-                        pixel_of(t, view, s, max_depth, surface_layers, tile.rays);
+                        pixel_of(t, view, s, prefix, surface_layers, tile.rays);
         });
         const std::lock_guard lock(mutex);
         rays.add(tile.rays);

@@ -25,7 +25,7 @@ class GBuffer {
   public:
     /// Traces sample `sample` of the pixels of `region`, whole packets at a time.
     GBuffer(const Transport& t, const View& view, const PixelRect& region, std::uint32_t sample,
-            std::uint32_t max_depth, bool surface_layers, int threads, RayCounts& rays);
+            const PrefixSettings& prefix, bool surface_layers, int threads, RayCounts& rays);
 
     [[nodiscard]] const PixelRect& region() const { return region_; }
     /// `x`, `y` in the region.

@@ -32,7 +32,7 @@ CameraSample seed_sample(const View& view, const Tracer& tracer, int column, int
 void add_seeds(const Transport& t, const CameraSample& sample, std::uint32_t max_depth,
                std::vector<FieldSeed>& seeds, RayCounts& rays) {
     Spectrum emission;
-    const auto x = follow_prefix(t, sample, max_depth, emission, rays);
+    const auto x = follow_prefix(t, sample, {max_depth}, emission, rays);
     if (!x) return;
     const SurfacePoint& p = x->vertex.point;
     seeds.push_back({p.position, p.geometric_normal, p.offset});

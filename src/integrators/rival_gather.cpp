@@ -90,8 +90,8 @@ class RivalGather final : public Integrator {
     /// is not bounded in pixels.
     void place(Preparation& p) {
         const PixelRect frame{0, 0, view_.width, view_.height};
-        gbuffer_ = std::make_unique<GBuffer>(transport_, view_, frame, p.first_sample, max_depth_,
-                                             surface_layers_, p.threads, p.rays);
+        gbuffer_ = std::make_unique<GBuffer>(transport_, view_, frame, p.first_sample,
+                                             PrefixSettings{max_depth_}, surface_layers_, p.threads, p.rays);
         find_points(p.threads);
         SiteRun run{p.threads, p.stop, {}, {}};
         const auto point_at = [&](Kept kept) {

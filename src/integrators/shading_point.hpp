@@ -13,10 +13,17 @@ struct ShadingPoint {
     float distance;  // metres from the camera, along the whole prefix
 };
 
-/// Follows mirrors and smooth glass from a camera sample to a surface that scatters; adds what they show of
-/// light to `emission`. Empty where the path ends before, or has `max_depth` scattering vertices.
+/// What a prefix is made of.
+struct PrefixSettings {
+    std::uint32_t max_depth;  // scattering vertices of a whole path
+    float sharp_alpha = 0;    // surfaces whose lobes all have a GGX α below it belong to it, too
+};
+
+/// Follows mirrors and smooth glass, and what is nearly so, from a camera sample to a surface that scatters;
+/// adds what they show of light to `emission`: of what is only nearly smooth by sampling lights as well.
+/// Empty where the path ends before, or has `max_depth` scattering vertices.
 [[nodiscard]] std::optional<ShadingPoint> follow_prefix(const Transport& t, const CameraSample& sample,
-                                                        std::uint32_t max_depth, Spectrum& emission,
+                                                        const PrefixSettings& settings, Spectrum& emission,
                                                         RayCounts& rays);
 
 }  // namespace relumine

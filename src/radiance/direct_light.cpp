@@ -52,7 +52,8 @@ std::optional<LightProposal> propose_direct_light(const Transport& t, const Vert
     if (is_black(reflected)) return {};
     const float pdf = guide && !light->delta ? guide->pdf(light->w_in, bsdf_pdf) : bsdf_pdf;
     const float weight = light->delta ? 1 : mis_weight(light->pdf, pdf);
-    return LightProposal{shadow_ray(vertex.point, *light, u.opacity_seed), reflected * (weight / light->pdf)};
+    return LightProposal{shadow_ray(vertex.point, *light, u.opacity_seed), reflected * (weight / light->pdf),
+                         light->delta};
 }
 
 Spectrum delta_light(const Transport& t, const Vertex& vertex, std::uint32_t opacity_seed, RayCounts& rays) {

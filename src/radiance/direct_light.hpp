@@ -26,6 +26,7 @@ void passed_light(const Tracer& tracer, const RayLanes& rays, std::size_t count,
 struct LightProposal {
     Ray shadow_ray;
     Spectrum reflected;
+    bool delta;  // the light has no size
 };
 
 /// What drawing a light takes.
