@@ -16,7 +16,7 @@ import methods  # noqa: E402
 import tables  # noqa: E402
 from command import Relumine  # noqa: E402
 from measure import Lab, Plan, log, measure  # noqa: E402
-from reference import References, digest  # noqa: E402
+from reference import digest  # noqa: E402
 
 TARGETS = (0.005, 0.01, 0.015, 0.02)  # relative L1
 QUICK = {"size": (128, 128), "reference_rays": 512, "reference_passes": 8, "reference_ratio": 2.0}
@@ -108,7 +108,7 @@ def fingerprint(args: argparse.Namespace) -> dict:
     """What must be the same for results to be kept by --resume."""
     return {"program": digest(args.relumine), "size": list(args.size), "spp": args.spp, "quick": args.quick,
             "repeats": args.repeats, "threads": args.threads, "methods": args.methods,
-            "reference": [args.reference_rays, args.reference_ratio]}
+            "reference": ["sobol", args.reference_rays, args.reference_ratio]}
 
 
 def run_all(args: argparse.Namespace) -> dict:
@@ -121,7 +121,7 @@ def run_all(args: argparse.Namespace) -> dict:
     with tempfile.TemporaryDirectory() as scratch:
         relumine = Relumine(args.relumine, pathlib.Path(scratch))
         rays = max(16, args.reference_rays // args.spp)
-        references = References(relumine, args.out / "references", rays, max(1, rays // 16), args.reference_passes, log)
+        references = cells.references(relumine, args.out, rays, args.reference_passes, log)
         run = {"relumine": relumine.version(), "cpu": cpu_model(), "cores": os.cpu_count(), "missing": missing,
                "load_before": os.getloadavg()[0], "fingerprint": fingerprint(args), "size": list(args.size),
                "spp": args.spp, "threads": args.threads, "repeats": args.repeats, "quick": args.quick,
