@@ -124,7 +124,8 @@ class Tables(unittest.TestCase):
 
     def test_all_files_are_written(self):
         written = {file.name for file in tables.write_all(self.data, [0.005, 0.01], self.folder)}
-        self.assertEqual(written, {"a.svg", "b.svg", "runs.csv", "ratios.csv", "report.md"})
+        self.assertEqual(written, {"a.svg", "b.svg", "all-l1.svg", "all-rms.svg", "all-blocks.svg", "runs.csv", "ratios.csv",
+                                   "report.md"})
         self.assertTrue(tree.parse(self.folder / "a.svg").getroot().tag.endswith("svg"))
         self.assertEqual((self.folder / "runs.csv").read_text().count("\n"), 1 + 2 * 12)
 
