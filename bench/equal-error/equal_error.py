@@ -3,6 +3,7 @@
 """Error against time for every method, and what each costs at equal error; see README.md."""
 import argparse
 import json
+import math
 import os
 import pathlib
 import platform
@@ -37,6 +38,8 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--methods", type=words, default=names, help=f"of {','.join(names)} (default: all)")
     parser.add_argument("--repeats", type=int, default=1, help="renders of each kind, with seeds of their own (default: 1)")
     parser.add_argument("--threads", type=int, default=1, help="(default: 1)")
+    parser.add_argument("--most-seconds", type=float, default=math.inf,
+                        help="a method gets no larger budget on a scene where it has taken so much CPU time (default: none)")
     parser.add_argument("--targets", type=percents, default=list(TARGETS),
                         help="relative L1 at which costs are compared, in %% (default: 0.5,1,1.5,2)")
     parser.add_argument("--dragon", type=pathlib.Path, default=root / "models/dragon.ply.gz",
@@ -117,7 +120,8 @@ def run_all(args: argparse.Namespace) -> dict:
     for reason in missing:
         log(f"skipped: {reason}")
     plan = Plan(*args.size, args.spp, args.threads, args.repeats, args.methods, args.quick,
-                stop_at=0.6 * min(args.targets), reference_ratio=args.reference_ratio, keep_pictures=args.keep_pictures)
+                stop_at=0.6 * min(args.targets), most_seconds=args.most_seconds, reference_ratio=args.reference_ratio,
+                keep_pictures=args.keep_pictures)
     with tempfile.TemporaryDirectory() as scratch:
         relumine = Relumine(args.relumine, pathlib.Path(scratch))
         rays = max(16, args.reference_rays // args.spp)
