@@ -163,9 +163,9 @@ def table_of_gains(scenes: dict[str, dict], targets: list[float]) -> list[str]:
              "was better at its cheapest; `–` ours did not reach the error, or nothing can be said.", ""]
     pairs = [(ours, None) for ours in (*methods.OURS, methods.BLOCK_RIVAL, "irradiance-cache", "radiance-cache", "reproject",
                                              "reproject-mc")]
-    pairs += [("cache", methods.BLOCK_RIVAL)]
+    pairs += [("cache", methods.BLOCK_RIVAL), ("cache", "cache-even")]
     for ours, rival in pairs:
-        if not any(ours in scene["points"] for scene in scenes.values()):
+        if not any({ours, rival or ours} <= set(scene["points"]) for scene in scenes.values()):
             continue
         against = f"`{rival}`" if rival else "the best of the path type"
         lines += [f"### `{ours}` against {against}", ""]
