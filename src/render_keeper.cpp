@@ -36,8 +36,8 @@ Identity settings_identity(const RenderSettings& settings) {
     const auto& [method, samples_per_pixel, pixel_sampling, pixel_filter, sampler, gather_rays,
                  gather_packets, light_samples, max_depth, radiance, guide, photons, record_size,
                  record_layers, record_spacing, records_per_point, gap_cell, bsdf_share, error, unbiased,
-                 filter_residual, residual_rays, accuracy, glossy_rays, harmonics, cache_scope, masking,
-                 camera, width, height, crop, threads, seed, aovs] = settings;
+                 filter_residual, residual_rays, without, accuracy, glossy_rays, harmonics, cache_scope,
+                 masking, camera, width, height, crop, threads, seed, aovs] = settings;
     (void)threads;  // never changes a bit
     return {{"method", text_of(method)},
             {"samples per pixel", text_of(samples_per_pixel)},
@@ -61,6 +61,7 @@ Identity settings_identity(const RenderSettings& settings) {
             {"unbiased", text_of(unbiased)},
             {"filter residual", text_of(filter_residual)},
             {"residual rays", text_of(residual_rays)},
+            {"without", text_of(without)},
             {"accuracy", text_of(accuracy)},
             {"glossy rays", text_of(glossy_rays)},
             {"harmonics", text_of(harmonics)},

@@ -58,11 +58,13 @@ void check_cache(const RenderSettings& s) {
     check_name("cache scope", s.cache_scope, {"image", "tile"});
 }
 
-void check_layers(const std::vector<std::string>& names) {
+void check_names(const char* setting, const char* kind, const std::vector<std::string>& names,
+                 const std::vector<std::string>& known) {
     for (auto name = names.begin(); name != names.end(); ++name) {
-        check_name("aov", *name, aov_names());
+        check_name(setting, *name, known);
         if (std::find(names.begin(), name, *name) != name)
-            throw SettingsError{expected_found("aov", "each layer once", "\"" + *name + "\" twice")};
+            throw SettingsError{
+                expected_found(setting, fmt::format("each {} once", kind), "\"" + *name + "\" twice")};
     }
 }
 
@@ -71,6 +73,8 @@ void check_layers(const std::vector<std::string>& names) {
 std::vector<std::string> render_methods() { return integrator_names(); }
 
 std::vector<std::string> aov_names() { return film_layer_names(); }
+
+std::vector<std::string> cache_parts() { return {"reprojection", "splits", "blending", "sharp-lobes"}; }
 
 void validate(const RenderSettings& s) {
     constexpr std::int64_t million = std::int64_t{1} << 20, max_rays_per_pixel = std::int64_t{1} << 31;
@@ -95,6 +99,7 @@ void validate(const RenderSettings& s) {
                     -million, max_rays_per_pixel);
     }
     check_cache(s);
+    check_names("without", "part", s.without, cache_parts());
     check_range("max depth", s.max_depth, -1, million);
     check_name("radiance", s.radiance, {"auto", "emission", "direct", "radiosity", "path"});
     check_name("guide", s.guide, {"none", "field"});
@@ -102,7 +107,7 @@ void validate(const RenderSettings& s) {
     check_name("masking", s.masking, {"correlated", "separable"});
     check_range("threads", s.threads, 0, 4096);
     check_frame(s);
-    check_layers(s.aovs);
+    check_names("aov", "layer", s.aovs, aov_names());
 }
 
 }  // namespace relumine

@@ -160,6 +160,20 @@ TEST_P(CacheScenes, ComesCloserToGatherTheLessErrorIsAllowed) {
     }
 }
 
+TEST(Cache, EveryPartLeftOutShowsAndIsRightStill) {
+    const Case& sunny = cases[1];
+    const Scene scene = project_scene(sunny.scene, sunny.environment);
+    RenderSettings settings = settings_for(sunny, "cache");
+    settings.width = settings.height = 40;
+    const Image whole = render(scene, settings);
+    for (const char* part : {"reprojection", "splits", "blending"}) {
+        settings.without = {part};
+        const double changed = difference(render(scene, settings), whole);
+        EXPECT_GT(changed, 0) << part;
+        EXPECT_LT(changed, 0.1) << part;
+    }
+}
+
 RenderSettings small(const std::string& method, int samples) {
     RenderSettings settings;
     settings.method = method;

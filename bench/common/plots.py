@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Line charts as SVG, written by hand: log-log panels side by side with one legend."""
+"""Line charts as SVG, written by hand: log-log panels in rows with one legend."""
 import dataclasses
 import math
 from xml.sax.saxutils import escape
 
-COLOURS = ("#1f77b4", "#d95f02", "#1b9e77", "#c2185b", "#7570b3", "#8a6d00", "#444444", "#00838f")
+COLOURS = ("#1f77b4", "#d95f02", "#1b9e77", "#c2185b", "#7570b3", "#8a6d00", "#444444", "#00838f",
+           "#e6ab02", "#999999", "#6d4c41", "#64dd17")
 WIDTH, HEIGHT = 380, 260  # of a panel, pixels
 LEFT, RIGHT, TOP, BOTTOM = 62, 14, 30, 44
 LEGEND_LINE = 18
@@ -19,17 +20,18 @@ class Panel:
     lines: dict[str, list[tuple[float, float]]]  # name -> points; all numbers above 0
 
 
-def chart(panels: list[Panel]) -> str:
+def chart(panels: list[Panel], columns: int = 4) -> str:
     names = list(dict.fromkeys(name for panel in panels for name in panel.lines))
     colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
-    width, height = WIDTH * len(panels), HEIGHT + LEGEND_LINE * ((len(names) + 2) // 3) + 10
+    below = HEIGHT * -(-len(panels) // columns)
+    width, height = WIDTH * min(len(panels), columns), below + LEGEND_LINE * ((len(names) + 2) // 3) + 10
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
              f'viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="11">',
              f'<rect width="{width}" height="{height}" fill="white"/>']
     for i, panel in enumerate(panels):
-        parts += [f'<g transform="translate({i * WIDTH} 0)">', *_panel(panel, colours), "</g>"]
+        parts += [f'<g transform="translate({i % columns * WIDTH} {i // columns * HEIGHT})">', *_panel(panel, colours), "</g>"]
     for i, name in enumerate(names):
-        x, y = LEFT + (i % 3) * (width - LEFT) / 3, HEIGHT + 12 + LEGEND_LINE * (i // 3)
+        x, y = LEFT + (i % 3) * (width - LEFT) / 3, below + 12 + LEGEND_LINE * (i // 3)
         parts.append(f'<line x1="{x:.1f}" y1="{y - 4}" x2="{x + 18:.1f}" y2="{y - 4}" stroke="{colours[name]}" '
                      f'stroke-width="2"/><text x="{x + 24:.1f}" y="{y}">{escape(name)}</text>')
     return "\n".join([*parts, "</svg>"]) + "\n"

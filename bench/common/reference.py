@@ -39,9 +39,9 @@ class References:
     """`gather` whose bright light is also sampled directly: the integrand of all methods."""
 
     def __init__(self, relumine: Relumine, folder: pathlib.Path, rays: int, light_samples: int, max_passes: int,
-                 log: Callable[[str], None]):
+                 log: Callable[[str], None], sampler: str = "stratified"):
         self.relumine, self.folder, self.max_passes, self.log = relumine, folder, max_passes, log
-        self.options: Options = {"method": "gather", "sampler": "stratified", "gather-rays": rays,
+        self.options: Options = {"method": "gather", "sampler": sampler, "gather-rays": rays,
                                  "light-samples": light_samples}
         folder.mkdir(parents=True, exist_ok=True)
 

@@ -222,6 +222,14 @@ class Looks(unittest.TestCase):
         text = plots.chart([plots.Panel("error < 1 %", "n", "L1", {"a & b": [(16, 0.1), (32, 0.05)]})])
         self.assertTrue(tree.fromstring(text).tag.endswith("svg"))
 
+    def test_panels_stand_in_rows_and_ten_lines_differ_in_colour(self):
+        panel = plots.Panel("", "x", "y", {str(i): [(1, 1 + i), (2, 1 + i)] for i in range(10)})
+        text = plots.chart([panel] * 5, columns=3)
+        self.assertIn(f'width="{3 * plots.WIDTH}"', text)
+        self.assertIn(f'translate({plots.WIDTH} {plots.HEIGHT})', text)
+        self.assertEqual(len(set(plots.COLOURS[:10])), 10)
+        self.assertTrue(all(text.count(f'stroke="{colour}" stroke-width') == 6 for colour in plots.COLOURS[:10]))
+
     def test_many_values_along_x_get_round_numbers(self):
         line = [(1.1 + 0.37 * i, 1.0) for i in range(30)]
         text = plots.chart([plots.Panel("", "x", "y", {"a": line})])

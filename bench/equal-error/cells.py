@@ -4,10 +4,12 @@ import dataclasses
 import math
 import pathlib
 import random
+from collections.abc import Callable
 
 import environments
 import make_scenes
-from command import Options, View
+from command import Options, Relumine, View
+from reference import References
 
 import demo  # make_scenes has put scenes/ on the path
 import glb as gltf
@@ -75,6 +77,11 @@ def make_cells(folder: pathlib.Path, wanted: list[str], dragon: pathlib.Path,
             write(file)
             cells[name] = Cell(name, about, file, *light)
     return [cells[name] for name in wanted if name in cells], skies["white"], missing
+
+
+def references(relumine: Relumine, out: pathlib.Path, rays: int, max_passes: int, log: Callable[[str], None]) -> References:
+    """The same for all programs of this folder, so that each finds what another has rendered."""
+    return References(relumine, out / "references", rays, max(1, rays // 4), max_passes, log, sampler="sobol")
 
 
 # --- scenes of our own; metres, y up ---

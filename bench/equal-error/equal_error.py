@@ -3,6 +3,7 @@
 """Error against time for every method, and what each costs at equal error; see README.md."""
 import argparse
 import json
+import math
 import os
 import pathlib
 import platform
@@ -16,7 +17,7 @@ import methods  # noqa: E402
 import tables  # noqa: E402
 from command import Relumine  # noqa: E402
 from measure import Lab, Plan, log, measure  # noqa: E402
-from reference import References, digest  # noqa: E402
+from reference import digest  # noqa: E402
 
 TARGETS = (0.005, 0.01, 0.015, 0.02)  # relative L1
 QUICK = {"size": (128, 128), "reference_rays": 512, "reference_passes": 8, "reference_ratio": 2.0}
@@ -37,6 +38,8 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--methods", type=words, default=names, help=f"of {','.join(names)} (default: all)")
     parser.add_argument("--repeats", type=int, default=1, help="renders of each kind, with seeds of their own (default: 1)")
     parser.add_argument("--threads", type=int, default=1, help="(default: 1)")
+    parser.add_argument("--most-seconds", type=float, default=math.inf,
+                        help="a method gets no larger budget on a scene where it has taken so much CPU time (default: none)")
     parser.add_argument("--targets", type=percents, default=list(TARGETS),
                         help="relative L1 at which costs are compared, in %% (default: 0.5,1,1.5,2)")
     parser.add_argument("--dragon", type=pathlib.Path, default=root / "models/dragon.ply.gz",
@@ -108,7 +111,7 @@ def fingerprint(args: argparse.Namespace) -> dict:
     """What must be the same for results to be kept by --resume."""
     return {"program": digest(args.relumine), "size": list(args.size), "spp": args.spp, "quick": args.quick,
             "repeats": args.repeats, "threads": args.threads, "methods": args.methods,
-            "reference": [args.reference_rays, args.reference_ratio]}
+            "reference": ["sobol", args.reference_rays, args.reference_ratio]}
 
 
 def run_all(args: argparse.Namespace) -> dict:
@@ -117,11 +120,12 @@ def run_all(args: argparse.Namespace) -> dict:
     for reason in missing:
         log(f"skipped: {reason}")
     plan = Plan(*args.size, args.spp, args.threads, args.repeats, args.methods, args.quick,
-                stop_at=0.6 * min(args.targets), reference_ratio=args.reference_ratio, keep_pictures=args.keep_pictures)
+                stop_at=0.6 * min(args.targets), most_seconds=args.most_seconds, reference_ratio=args.reference_ratio,
+                keep_pictures=args.keep_pictures)
     with tempfile.TemporaryDirectory() as scratch:
         relumine = Relumine(args.relumine, pathlib.Path(scratch))
         rays = max(16, args.reference_rays // args.spp)
-        references = References(relumine, args.out / "references", rays, max(1, rays // 16), args.reference_passes, log)
+        references = cells.references(relumine, args.out, rays, args.reference_passes, log)
         run = {"relumine": relumine.version(), "cpu": cpu_model(), "cores": os.cpu_count(), "missing": missing,
                "load_before": os.getloadavg()[0], "fingerprint": fingerprint(args), "size": list(args.size),
                "spp": args.spp, "threads": args.threads, "repeats": args.repeats, "quick": args.quick,

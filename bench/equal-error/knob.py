@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Is `cache --error E` kept, and does the layer `error` know? A row of Markdown for each scene and E.
 
-References are the mean of two pictures by `gather`, kept in --out; what they differ by is their own error, which is
+References are those of equal_error.py in its --out, two passes of them where there are none yet. Their own error is
 part of the measured one and makes the coverage look worse than it is.
 """
 import argparse
@@ -13,41 +13,26 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench" / "common"))
-import metrics  # noqa: E402  (after the path)
-import pictures  # noqa: E402
-from command import Options, Relumine, View  # noqa: E402
+import pictures  # noqa: E402  (after the path)
+from command import Options, Relumine  # noqa: E402
 
 import cells  # noqa: E402
+from measure import log  # noqa: E402
 
 SCENES = ["window", "still-life", "shadow", "blinds", "gloss", "foliage", "room"]
-REFERENCE: Options = {"method": "gather", "sampler": "sobol", "gather-rays": 4096, "light-samples": 1024}
-REFERENCE_SEEDS = (1_000_001, 1_000_002)
+REFERENCE_RAYS = 4096  # per pixel and pass, as in equal_error.py
 
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--relumine", type=pathlib.Path, default=ROOT / "build" / "release" / "relumine")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "knob")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "equal-error")
     parser.add_argument("--scenes", default=",".join(SCENES), help="separated by commas (default: %(default)s)")
     parser.add_argument("--errors", default="0.05,0.02,0.01,0.005", help="(default: %(default)s)")
     parser.add_argument("--size", default="128x128", help="(default: %(default)s)")
     parser.add_argument("--unbiased", action="store_true")
     parser.add_argument("--threads", type=int, default=1)
     return parser.parse_args()
-
-
-def reference(relumine: Relumine, view: View, name: str, folder: pathlib.Path) -> tuple[pathlib.Path, float]:
-    """A file with the mean of the two pictures, and its own relative L1 error."""
-    halves = []
-    for seed in REFERENCE_SEEDS:
-        file = folder / f"{name}-{view.width}x{view.height}-{seed}.pfm"
-        if not file.exists():
-            print(f"{file.name}: rendering", file=sys.stderr, flush=True)
-            pictures.write_pfm(file, relumine.render(view, REFERENCE, seed, threads=0).picture)
-        halves.append(pictures.read_pfm(file))
-    mean = folder / f"{name}-{view.width}x{view.height}.pfm"
-    pictures.write_pfm(mean, (halves[0] + halves[1]) / 2)
-    return mean, metrics.error_of_mean(*halves, np.ones((view.height, view.width), bool)).l1
 
 
 def row(name: str, error: str, stats: dict, own: float) -> str:
@@ -60,16 +45,21 @@ def row(name: str, error: str, stats: dict, own: float) -> str:
 def main() -> None:
     args = arguments()
     width, height = map(int, args.size.split("x"))
-    args.out.mkdir(parents=True, exist_ok=True)
-    relumine = Relumine(args.relumine, args.out)
-    made, _, missing = cells.make_cells(args.out, args.scenes.split(","), ROOT / "models" / "dragon.ply.gz", None)
+    folder = args.out / "knob"
+    folder.mkdir(parents=True, exist_ok=True)
+    relumine = Relumine(args.relumine, folder)
+    references = cells.references(relumine, args.out, REFERENCE_RAYS, 2, log)
+    made, _, missing = cells.make_cells(args.out / "scenes", args.scenes.split(","), ROOT / "models" / "dragon.ply.gz", None)
     for text in missing:
-        print(text, file=sys.stderr)
+        log(text)
     print("| scene | `--error` | relative L1 | predicted | the reference's own | within one, two sigma | CPU s |")
     print("|---|--:|--:|--:|--:|--:|--:|")
     for cell in made:
         view = cell.view(width, height, spp=1)
-        mean, own = reference(relumine, view, cell.name, args.out)
+        reference = references.get(view)
+        own = reference.error(np.ones((height, width), bool)).l1
+        mean = folder / f"{cell.name}-{args.size}.pfm"
+        pictures.write_pfm(mean, reference.picture)
         for error in args.errors.split(","):
             options: Options = {"method": "cache", "error": error, "aov": "error", "reference": str(mean)}
             if args.unbiased:

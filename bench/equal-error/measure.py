@@ -33,6 +33,7 @@ class Plan:
     methods: list[str]
     quick: bool
     stop_at: float  # relative L1: a method that has reached it is not given more
+    most_seconds: float  # of CPU time: nor one that has taken so many
     reference_ratio: float  # smallest error over the reference's own
     keep_pictures: bool
 
@@ -78,7 +79,7 @@ def measure(lab: Lab, cell: Cell, state: dict, save: Callable[[], None]) -> None
 
 def render_all(lab: Lab, cell: Cell, view: View, keep: np.ndarray, rough: Reference, state: dict,
                save: Callable[[], None]) -> None:
-    """Methods take turns, cheap budgets first; one that has reached `stop_at` or was refused drops out."""
+    """Methods take turns, cheap budgets first; one that has had enough or was refused drops out."""
     plan, runs = lab.plan, state["runs"]
     wanted = {name: options for name, options in methods.budgets(cell.path_depth, plan.spp, plan.quick).items()
               if name in plan.methods}
@@ -87,7 +88,7 @@ def render_all(lab: Lab, cell: Cell, view: View, keep: np.ndarray, rough: Refere
         for name in wanted:
             if name not in active or turn >= len(wanted[name]):
                 continue
-            best = np.inf
+            best, dearest = np.inf, 0.0
             for seed in range(1, plan.repeats + 1):
                 key = f"{name}-{turn}-{seed}"
                 file = lab.picture_file(cell, key)
@@ -110,8 +111,8 @@ def render_all(lab: Lab, cell: Cell, view: View, keep: np.ndarray, rough: Refere
                 runs[key]["rough"] = metrics.errors(pictures.read_pfm(file), rough.picture, keep).l1
                 log(f"    {name} {runs[key]['options']}: {runs[key]['cpu_seconds']:.2f} CPU s, "
                     f"L1 about {runs[key]['rough']:.2%}")
-                best = min(best, runs[key]["rough"])
-            if best < plan.stop_at:
+                best, dearest = min(best, runs[key]["rough"]), max(dearest, runs[key]["cpu_seconds"])
+            if best < plan.stop_at or dearest > plan.most_seconds:
                 active.discard(name)
 
 

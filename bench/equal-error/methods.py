@@ -16,7 +16,8 @@ WORDS = {
     "reproject": "the paper's method: records of n² rays",
     "reproject-mc": "the paper's unbiased method",
     "cache": "maps for blocks whose size follows the error wanted, residual rays, filtered",
-    "cache-unbiased": "the same, exact in expectation, nothing filtered",
+    "cache-even": "the same at `--error 0.02`, but as many rays for each pixel",
+    "cache-unbiased": "as `cache`, exact in expectation, nothing filtered",
 }
 
 
@@ -36,6 +37,7 @@ def budgets(path_depth: int, spp: int, quick: bool) -> dict[str, list[Options]]:
     plain = rays(256) if quick else rays(256, 1024, 4096)
     errors = [0.08, 0.02, 0.005, 0.001] if quick else [0.08, 0.04, 0.02, 0.01, 0.005, 0.002, 0.001]
     sizes = [32] if quick else [32, 64, 128]
+    even = rays(8, 32, 128) if quick else rays(4, 8, 16, 32, 64, 128, 256)
     residual = rays(4, 16, 64, 256) if quick else rays(4, 16, 64, 256, 1024)
     records = list(zip((16, 32, 32, 64, 64), (0.4, 0.3, 0.15, 0.15, 0.08), rays(16, 64, 256, 1024, 4096),
                        rays(4, 16, 64, 256, 1024)))[:4 if quick else 5]
@@ -51,6 +53,7 @@ def budgets(path_depth: int, spp: int, quick: bool) -> dict[str, list[Options]]:
         "reproject": [{"method": "reproject", "record-size": n} for n in sizes],
         "reproject-mc": [{"method": "reproject-mc", "gather-rays": n} for n in plain],
         "cache": [{"method": "cache", "error": e} for e in errors],
+        "cache-even": [{"method": "cache", "residual-rays": n, "light-samples": 2 * n} for n in even],
         "cache-unbiased": [{"method": "cache", "unbiased": "", "residual-rays": n, "light-samples": m}
                            for n in residual for m in (max(1, n // 4), n)],
     }

@@ -23,7 +23,8 @@ def write_all(data: dict, targets: list[float], folder: pathlib.Path) -> list[pa
     """All files; returns them. Scenes whose measurement was interrupted are left out."""
     scenes = {name: summed_up(scene) for name, scene in data["scenes"].items() if scene.get("done")}
     charts = [write_chart(name, scene, folder) for name, scene in scenes.items()]
-    written = [*charts, write_runs(data, folder), write_ratios(scenes, targets, folder)]
+    together = [write_chart_of_all(scenes, error, folder) for error in ERRORS] if scenes else []
+    written = [*charts, *together, write_runs(data, folder), write_ratios(scenes, targets, folder)]
     report = folder / "report.md"
     report.write_text("\n".join(markdown(data, scenes, targets, charts)) + "\n", encoding="utf-8")
     return [*written, report]
@@ -162,9 +163,9 @@ def table_of_gains(scenes: dict[str, dict], targets: list[float]) -> list[str]:
              "was better at its cheapest; `–` ours did not reach the error, or nothing can be said.", ""]
     pairs = [(ours, None) for ours in (*methods.OURS, methods.BLOCK_RIVAL, "irradiance-cache", "radiance-cache", "reproject",
                                              "reproject-mc")]
-    pairs += [("cache", methods.BLOCK_RIVAL)]
+    pairs += [("cache", methods.BLOCK_RIVAL), ("cache", "cache-even")]
     for ours, rival in pairs:
-        if not any(ours in scene["points"] for scene in scenes.values()):
+        if not any({ours, rival or ours} <= set(scene["points"]) for scene in scenes.values()):
             continue
         against = f"`{rival}`" if rival else "the best of the path type"
         lines += [f"### `{ours}` against {against}", ""]
@@ -261,13 +262,29 @@ def write_csv(file: pathlib.Path, columns: list[str], rows: list[dict]) -> pathl
     return file
 
 
-def write_chart(name: str, scene: dict, folder: pathlib.Path) -> pathlib.Path:
-    """Frontiers of all methods: three errors over CPU seconds, L1 over rays."""
-    def panel(cost: str, error: str) -> plots.Panel:
-        return plots.Panel(name, "million rays" if cost == "rays" else COSTS[cost], f"{ERRORS[error]}, %",
-                           {method: [(c / (1e6 if cost == "rays" else 1), 100 * e)
-                                     for c, e in frontier(line(scene, method, cost, error))] for method in scene["points"]})
+def panel(name: str, scene: dict, cost: str, error: str) -> plots.Panel:
+    """Frontiers of all methods."""
+    return plots.Panel(name, "million rays" if cost == "rays" else COSTS[cost], f"{ERRORS[error]}, %",
+                       {method: [(c / (1e6 if cost == "rays" else 1), 100 * e)
+                                 for c, e in frontier(line(scene, method, cost, error))] for method in scene["points"]})
 
+
+def write_chart(name: str, scene: dict, folder: pathlib.Path) -> pathlib.Path:
+    """Three errors over CPU seconds, L1 over rays."""
     file = folder / f"{name}.svg"
-    file.write_text(plots.chart([*(panel("cpu_seconds", error) for error in ERRORS), panel("rays", "l1")]), encoding="utf-8")
+    panels = [*(panel(name, scene, "cpu_seconds", error) for error in ERRORS), panel(name, scene, "rays", "l1")]
+    file.write_text(plots.chart(panels), encoding="utf-8")
+    return file
+
+
+def write_chart_of_all(scenes: dict[str, dict], error: str, folder: pathlib.Path) -> pathlib.Path:
+    """One error over CPU seconds, a panel for each scene; level, what the reference itself is off by."""
+    panels = []
+    for name, scene in scenes.items():
+        panels.append(panel(name, scene, "cpu_seconds", error))
+        costs = [cost for points in panels[-1].lines.values() for cost, _ in points]
+        own = 100 * scene["reference"][error]
+        panels[-1].lines["the reference's own error"] = [(min(costs), own), (max(costs), own)]
+    file = folder / f"all-{error}.svg"
+    file.write_text(plots.chart(panels, columns=3), encoding="utf-8")
     return file

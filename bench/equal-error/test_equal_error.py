@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of the arithmetic and of the scenes: python3 -m unittest, in this folder."""
+import dataclasses
 import json
 import math
 import pathlib
@@ -8,11 +9,17 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as tree
 
+import numpy as np
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
-import cells  # noqa: E402  (after the path)
+import ablation  # noqa: E402  (after the path)
+import cells  # noqa: E402
 import methods  # noqa: E402
 import tables  # noqa: E402
+from command import Run, View  # noqa: E402
 from curves import AT_MOST, MORE_THAN, Bound, cheapest, cost_at, frontier, geometric_mean, ratio  # noqa: E402
+from measure import Lab, Plan, render_all  # noqa: E402
+from reference import Reference  # noqa: E402
 
 ROOT_LAW = [(float(n), 0.1 / math.sqrt(n)) for n in (1, 4, 16, 64, 256)]  # error as that of Monte Carlo
 
@@ -124,7 +131,8 @@ class Tables(unittest.TestCase):
 
     def test_all_files_are_written(self):
         written = {file.name for file in tables.write_all(self.data, [0.005, 0.01], self.folder)}
-        self.assertEqual(written, {"a.svg", "b.svg", "runs.csv", "ratios.csv", "report.md"})
+        self.assertEqual(written, {"a.svg", "b.svg", "all-l1.svg", "all-rms.svg", "all-blocks.svg", "runs.csv", "ratios.csv",
+                                   "report.md"})
         self.assertTrue(tree.parse(self.folder / "a.svg").getroot().tag.endswith("svg"))
         self.assertEqual((self.folder / "runs.csv").read_text().count("\n"), 1 + 2 * 12)
 
@@ -145,6 +153,57 @@ class Plans(unittest.TestCase):
     def test_paths_reach_as_far_as_gather_rays_see(self):
         self.assertEqual(cells.Cell("a", "", pathlib.Path("a")).path_depth, 1)
         self.assertEqual(cells.Cell("a", "", pathlib.Path("a"), radiance="direct").path_depth, 2)
+
+
+class SlowCommand:
+    """Every render takes twice the CPU time of the one before, and shows grey."""
+    def __init__(self) -> None:
+        self.renders = 0
+
+    def render(self, view: View, options: dict, seed: int, threads: int) -> Run:
+        self.renders += 1
+        stats = {"cpu_seconds": 2.0**self.renders, "total_rays": 1, "rays": {}, "command": "", "stage_seconds": {}}
+        return Run(np.ones((8, 8, 3), np.float32), stats, 0.0)
+
+
+class Budgets(unittest.TestCase):
+    def renders(self, stop_at: float, most_seconds: float) -> int:
+        command, white = SlowCommand(), Reference([np.full((8, 8, 3), 1.1)] * 2, 2)
+        cell = cells.Cell("a", "", pathlib.Path("a.glb"))
+        with tempfile.TemporaryDirectory() as folder:
+            plan = Plan(8, 8, 1, 1, 1, ["cache"], False, stop_at, most_seconds, 3.0, False)
+            lab = Lab(command, None, pathlib.Path("white"), pathlib.Path(folder), plan)
+            state = {"runs": {}, "refused": {}, "failed": {}, "start_up_seconds": 0.0}
+            render_all(lab, cell, cell.view(8, 8, 1), np.ones((8, 8), bool), white, state, lambda: None)
+        return command.renders
+
+    def test_a_method_stops_where_it_is_good_or_dear(self):
+        every = len(methods.budgets(1, 1, False)["cache"])
+        self.assertEqual(self.renders(0.0, math.inf), every)
+        self.assertEqual(self.renders(0.0, 15.0), 4)  # 2, 4, 8, 16 s
+        self.assertEqual(self.renders(0.2, math.inf), 1)
+
+
+class Ablation(unittest.TestCase):
+    def test_planted_losses_are_found(self):
+        def scene(size: float) -> dict[str, ablation.Outcome]:
+            whole = ablation.Outcome(2.0 * size, 1e6, 0.01 * size, 0.02, 0.001)
+            found = {variant: whole for variant in ablation.VARIANTS}
+            found["no residual rays"] = dataclasses.replace(whole, seconds=whole.seconds / 2, l1=whole.l1 * size)
+            return found
+
+        scenes = [scene(2.0), scene(8.0)]
+        self.assertAlmostEqual(ablation.mean_ratio(scenes, "no residual rays", "l1"), 4)
+        rows = ablation.table_of_means(scenes)
+        self.assertIn(f"| {ablation.WHOLE} | 1.00 | 1.00 | 1.00 | 1.00 |", rows)
+        self.assertIn("| no residual rays | 0.50 | 4.00 | 1.00 | 1.00 |", rows)
+        self.assertIn("| no residual rays | 4.00 %, 2 s | 64.00 %, 8 s |", ablation.table_of_all(["a", "b"], scenes))
+        self.assertIn("| no residual rays | 2 | 1 | 4.00 % | 2.00 % | 0.10 % |", ablation.table_of_scene("a", 0.001, scenes[0]))
+
+    def test_only_the_whole_has_no_options_of_its_own(self):
+        self.assertEqual([v for v, options in ablation.VARIANTS.items() if not options], [ablation.WHOLE])
+        self.assertEqual(ablation.options_of("`block-gather`", "0.01"), {"method": "block-gather", "error": "0.01"})
+        self.assertEqual(ablation.options_of(ablation.WHOLE, "0.01")["method"], "cache")
 
 
 class Scenes(unittest.TestCase):

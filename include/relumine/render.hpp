@@ -49,11 +49,13 @@ struct RenderSettings {
     bool filter_residual = true;  // `cache`: smooth what residual rays find; never where `unbiased`
     int residual_rays = -1;  // `cache`: rays per camera sample for what maps get wrong; −1: as `error` asks
                              // for, shared by all samples of a pixel
-    float accuracy = 0.2f;   // `irradiance-cache`, `radiance-cache`: a, up to which error a record is used
-                             // [Ward88]; less is more exact and slower, 0.02 … 1
-    int glossy_rays = -1;  // the same: rays per camera sample along lobes that records do not hold; −1: 64
-                           // per pixel
-    int harmonics = 10;    // `radiance-cache`: bands of the harmonics that a record holds, 3 … 16
+    std::vector<std::string>
+        without;            // `cache`: parts switched off, to see what they are worth; cache_parts()
+    float accuracy = 0.2f;  // `irradiance-cache`, `radiance-cache`: a, up to which error a record is used
+                            // [Ward88]; less is more exact and slower, 0.02 … 1
+    int glossy_rays = -1;   // the same: rays per camera sample along lobes that records do not hold; −1: 64
+                            // per pixel
+    int harmonics = 10;     // `radiance-cache`: bands of the harmonics that a record holds, 3 … 16
     std::string cache_scope = "image";  // "image", or "tile": caches of their own for tiles of 64 × 64 pixels
     std::string masking =
         "correlated";           // Smith masking-shadowing of microfacets: "correlated" or "separable"
@@ -65,9 +67,10 @@ struct RenderSettings {
     std::vector<std::string> aovs;  // further layers, see aov_names()
 };
 
-/// Names for RenderSettings::method and ::aovs.
+/// Names for RenderSettings::method, ::aovs and ::without.
 [[nodiscard]] std::vector<std::string> render_methods();
 [[nodiscard]] std::vector<std::string> aov_names();
+[[nodiscard]] std::vector<std::string> cache_parts();
 
 /// Throws SettingsError naming the first setting that is out of range, what was expected and what was found.
 void validate(const RenderSettings& settings);

@@ -46,6 +46,13 @@ void Blend::normalize() {
     for (std::size_t i = 0; i < count_; ++i) maps_[i].weight /= sum;
 }
 
+void Blend::keep_heaviest() {
+    if (empty()) return;
+    maps_[0] = *std::ranges::max_element(maps(), {}, &WeightedMap::weight);
+    maps_[0].weight = 1;
+    count_ = 1;
+}
+
 Blend blend_maps(const CachePoint& point, std::span<const BlockMap* const> candidates) {
     Blend blend;
     for (const BlockMap* map : candidates)

@@ -27,6 +27,8 @@ class Blend {
     /// Keeps the heaviest.
     void add(const BlockMap& map, float weight);
     void normalize();
+    /// Of the maps the one that weighs most, by 1.
+    void keep_heaviest();
 
   private:
     std::array<WeightedMap, most> maps_{};

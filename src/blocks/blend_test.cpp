@@ -81,6 +81,19 @@ TEST(Blend, WeightsAddUpToOneAndChangeSlowlyOverBorders) {
     }
 }
 
+TEST(Blend, TheHeaviestLightsAlone) {
+    const std::vector<BlockMap> maps{block(4.5f, 8.5f, 16), block(10.5f, 8.5f, 16), block(20.5f, 8.5f, 16)};
+    Blend blend = blend_maps(pixel(9, 8), pointers(maps));
+    ASSERT_GT(blend.maps().size(), 1u);
+    blend.keep_heaviest();
+    ASSERT_EQ(blend.maps().size(), 1u);
+    EXPECT_EQ(blend.maps()[0].map, &maps[1]);
+    EXPECT_EQ(blend.maps()[0].weight, 1);
+    Blend none;
+    none.keep_heaviest();
+    EXPECT_TRUE(none.empty());
+}
+
 TEST(Blend, TheMiddleOfABlockIsItsOwn) {
     std::vector<BlockMap> maps;
     for (const float x : {4.5f, 12.5f, 20.5f})

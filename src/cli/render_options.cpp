@@ -141,6 +141,10 @@ void add_cache_options(CLI::App& app, RenderSettings& s) {
         [&](const std::string& value) { s.filter_residual = parse_switch("--filter-residual", value); });
     add_number(app, {"--residual-rays", "N", "rays per camera sample for what the maps get wrong"},
                s.residual_rays, "by --error");
+    add_value(app,
+              {"--without", "LIST",
+               fmt::format("leave out parts, to see what they are worth: {}", fmt::join(cache_parts(), ","))},
+              "nothing", [&](const std::string& list) { s.without = split_at_commas(list); });
 }
 
 /// Of irradiance-cache and radiance-cache.

@@ -45,6 +45,7 @@ Json settings_json(const RenderSettings& s, const SceneOptions& scene) {
             {"unbiased", s.unbiased},
             {"filter_residual", s.filter_residual},
             {"residual_rays", s.residual_rays},
+            {"without", s.without},
             {"accuracy", s.accuracy},
             {"glossy_rays", s.glossy_rays},
             {"harmonics", s.harmonics},

@@ -36,6 +36,14 @@ RayDemand ray_demand(const RenderSettings& s) {
     return demand;
 }
 
+void leave_out(const std::vector<std::string>& parts, CachePlan& plan) {
+    const auto named = [&](const char* part) { return std::ranges::find(parts, part) != parts.end(); };
+    if (named("reprojection")) plan.reprojected = 0;
+    if (named("splits")) plan.blocks.smallest = plan.blocks.largest;
+    if (named("blending")) plan.blends = false;
+    if (named("sharp-lobes")) plan.sharp_alpha = 0;
+}
+
 }  // namespace
 
 float RayDemand::residual_rays(float doubt) const {
@@ -73,6 +81,7 @@ CachePlan cache_plan(const RenderSettings& s) {
     plan.filters = s.filter_residual && !s.unbiased && plan.rays.residual + plan.rays.light > 0;
     if (s.unbiased && plan.rays.residual == 0) plan.rays.residual = 1;
     if (plan.rays.residual > 0) plan.sharp_alpha = unresolved_alpha;
+    leave_out(s.without, plan);
     return plan;
 }
 

@@ -38,6 +38,7 @@ struct CachePlan {
     float lobe_rays = 1;          // of which a camera sample has so many
     std::size_t reprojected = 0;  // records around that a map is filled with, beside its own
     bool exact = false, filters = false;
+    bool blends = true;  // maps around a pixel; else the one that would weigh most lights it alone
 };
 
 /// At an error of 2 %: blocks with a parallax error of four fifths; in proportion. Rays as `demand` says,

@@ -161,7 +161,7 @@ class CellLight {
                         light_lobes(first);
                         continue;
                     }
-                    const Blend blend = blend_maps(first.pixel->cache, maps_);
+                    const Blend blend = blend_of(first);
                     if (blend.empty()) {
                         gather(first);
                         continue;
@@ -176,6 +176,12 @@ class CellLight {
                     light_own(x, y);
                     if (!stands_alone) light_others(quad, x, y);
                 }
+    }
+
+    [[nodiscard]] Blend blend_of(const LitSample& sample) const {
+        Blend blend = blend_maps(sample.pixel->cache, maps_);
+        if (!plan_.blends) blend.keep_heaviest();
+        return blend;
     }
 
     void gather(LitSample& sample) {
@@ -214,7 +220,7 @@ class CellLight {
         };
         for (const LitSample& sample : cell_.at(x, y)) {
             if (!waits(sample) || !alike(sample)) continue;
-            const Blend blend = blend_maps(sample.pixel->cache, maps_);
+            const Blend blend = blend_of(sample);
             if (blend.smallest_block() >= quad_shares && !blend.empty())
                 light_those(x, y, shared_.level_under(blend), alike);
             return;

@@ -138,5 +138,22 @@ TEST(ResidualScatter, AsksForRaysInProportion) {
     EXPECT_EQ(RayDemand::more_residual(std::numeric_limits<float>::quiet_NaN(), 32), 0);
 }
 
+TEST(CachePlan, LeavesOutThePartsNamed) {
+    const RenderSettings whole;
+    const auto left_out = [](const char* part) {
+        RenderSettings settings;
+        settings.without = {part};
+        return cache_plan(settings);
+    };
+    EXPECT_GT(cache_plan(whole).reprojected, 0u);
+    EXPECT_EQ(left_out("reprojection").reprojected, 0u);
+    EXPECT_LT(cache_plan(whole).blocks.smallest, cache_plan(whole).blocks.largest);
+    EXPECT_EQ(left_out("splits").blocks.smallest, left_out("splits").blocks.largest);
+    EXPECT_TRUE(cache_plan(whole).blends);
+    EXPECT_FALSE(left_out("blending").blends);
+    EXPECT_GT(cache_plan(whole).sharp_alpha, 0);
+    EXPECT_EQ(left_out("sharp-lobes").sharp_alpha, 0);
+}
+
 }  // namespace
 }  // namespace relumine
