@@ -19,8 +19,8 @@ using Reflect = std::function<void(std::span<const Spectrum> light, LightByEleme
 /// Sum of the absolute values.
 [[nodiscard]] double total(std::span<const Spectrum> light);
 
-/// `arriving`, and all that becomes of it: (1 − K)⁻¹ arriving, where K is one reflection, until what is still to
-/// be reflected is less than `least` in total. Stabilised biconjugate gradients [VanDerVorst92].
+/// `arriving`, and all that becomes of it: (1 − K)⁻¹ arriving, where K is one reflection, until what is still
+/// to be reflected is less than `least` in total. Stabilised biconjugate gradients [VanDerVorst92].
 struct AllReflections {
     LightByElement light;
     std::size_t asked = 0;   // how often K was
