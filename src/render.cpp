@@ -19,6 +19,7 @@
 #include "render_monitor.hpp"
 #include "render_passes.hpp"
 #include "render_setup.hpp"
+#include "scene/finish_scene.hpp"
 
 namespace relumine {
 namespace {
@@ -44,6 +45,12 @@ void refuse_memory(const RenderControl& control, const RenderSettings& settings,
     const char* way_out = settings.method == "path" ? "" : "; --method path takes the least";
     throw Error{fmt::format("memory limit: expected at most {} bytes in use, found {} after {} samples{}{}",
                             control.memory_limit, resident_bytes(), stats.samples, kept, way_out)};
+}
+
+/// Where nothing emits, the picture is black without following any light.
+RenderSettings as_far_as_lit(RenderSettings settings, const SceneData& scene) {
+    if (!emits_light(scene)) settings.max_depth = 0;
+    return settings;
 }
 
 /// Whether what a memory limit leaves shows in the picture.
@@ -77,11 +84,12 @@ Image render(const Scene& scene, const RenderSettings& settings, RenderObserver*
     return render(scene, settings, RenderControl{}, observer);
 }
 
-Image render(const Scene& scene, const RenderSettings& settings, const RenderControl& control,
+Image render(const Scene& scene, const RenderSettings& wanted, const RenderControl& control,
              RenderObserver* observer) {
-    validate(settings);
+    validate(wanted);
     validate(control);
     const SceneData& data = scene.data();
+    const RenderSettings settings = as_far_as_lit(wanted, data);
     const Framing framing = find_framing(data, settings);
     const int threads = resolve_threads(settings.threads);
 

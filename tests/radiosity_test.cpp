@@ -93,6 +93,27 @@ TEST(Radiosity, DepthCounts) {  // emission ½, albedo ½: ½ + ¼ + …
     }
 }
 
+/// Nothing emits: no field is built and no light is followed, and surfaces have the layers that they have
+/// under a sky.
+TEST(Radiosity, DarknessTakesNoTime) {
+    class Listener : public RenderObserver {
+      public:
+        void finished(const RenderStats& stats) override { seen = stats; }
+        RenderStats seen;
+    } listener;
+    RenderSettings settings = small("cache");
+    settings.aovs = {"albedo", "normal"};
+    const Image dark = render(project_scene("demo.glb"), settings, &listener);
+    EXPECT_EQ(mean_of(dark), 0);
+    EXPECT_FALSE(listener.seen.field);
+    EXPECT_EQ(listener.seen.total_rays, listener.seen.samples);  // of the camera
+    settings.max_depth = 1;
+    const Image lit = render(project_scene("demo.glb", "white.pfm"), settings);
+    EXPECT_GT(mean_of(lit), 0);
+    for (const std::string& name : settings.aovs)
+        EXPECT_EQ(dark.layer(name)->pixels, lit.layer(name)->pixels) << name;
+}
+
 /// A matte wall at one end of a corridor of metal, a lamp at the other: most light comes by more than three
 /// reflections. Biased, so compared by size: means within 2 %. Lobes that counted as diffuse from the fourth
 /// on darkened the wall by 12 %, which must be caught.

@@ -10,6 +10,7 @@ import dataclasses
 import pathlib
 import shlex
 import sys
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -35,14 +36,22 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--relumine", type=pathlib.Path, default=ROOT / "build" / "release" / "relumine")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "strangers")
     parser.add_argument("--worlds", default=",".join(names), help="separated by commas (default: %(default)s)")
-    parser.add_argument("--method", default="cache", help="and further options (default: %(default)s)")
-    parser.add_argument("--size", type=int, default=128, help="pixels along each side (default: %(default)s)")
-    parser.add_argument("--block", type=int, default=16, help="likewise, of a block (default: %(default)s)")
+    parser.add_argument("--scene", type=pathlib.Path, help="a file instead of the worlds")
+    parser.add_argument("--environment", type=pathlib.Path, help="that --scene is under (default: its own)")
+    parser.add_argument("--method", default="cache", help="and further options; several separated by | are a row each "
+                        "(default: %(default)s)")
+    parser.add_argument("--size", type=size_of, default=(128, 128), metavar="N|WxH", help="pixels (default: 128)")
+    parser.add_argument("--block", type=int, default=16, help="pixels along each side of one (default: %(default)s)")
     parser.add_argument("--spp", type=int, default=16, help="(default: %(default)s)")
     parser.add_argument("--reference-spp", type=int, default=2048, help="of each half (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=0, help="0: all (default)")
     parser.add_argument("--pictures", action="store_true", help="writes reference, render and signed error as PNG")
     return parser.parse_args()
+
+
+def size_of(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    return int(width), int(height or width)
 
 
 def options_of(text: str) -> Options:
@@ -58,22 +67,51 @@ def options_of(text: str) -> Options:
     return found
 
 
-def view_of(world: World, sky: pathlib.Path, args: argparse.Namespace) -> View:
-    file = args.out / f"{world.name}.glb"
+@dataclasses.dataclass(frozen=True)
+class Case:
+    """One of the worlds, or the given scene."""
+    name: str
+    view: View
+    noisy: int = 1
+
+
+EXTRA: Options = {"pixel-sampling": "jitter", "radiance": "auto"}
+
+
+def world_case(world: World, args: argparse.Namespace) -> Case:
+    file, sky = args.out / f"{world.name}.glb", args.out / "sky.pfm"
     world.write(file)
-    extra: Options = {"pixel-sampling": "jitter", "radiance": "auto"}
-    return View(file, sky if world.sky else None, world.env_rotate, args.size, args.size, extra)
+    return Case(world.name, View(file, sky if world.sky else None, world.env_rotate, *args.size, EXTRA), world.noisy)
 
 
-def references(relumine: Relumine, view: View, world: World, args: argparse.Namespace) -> list[np.ndarray]:
+def scene_case(args: argparse.Namespace) -> Case:
+    files = [args.scene] + ([args.environment] if args.environment else [])
+    return Case("-".join(file.stem for file in files), View(args.scene, args.environment, 0, *args.size, EXTRA))
+
+
+def cases(args: argparse.Namespace) -> Iterator[Case]:
+    if args.scene:
+        yield scene_case(args)
+        return
+    wanted = args.worlds.split(",")
+    unknown = set(wanted) - {world.name for world in WORLDS}
+    if unknown:
+        raise SystemExit(f"--worlds: unknown {', '.join(sorted(unknown))}")
+    pictures.write_pfm(args.out / "sky.pfm", environments.smooth_sky(environments.directions(512, 256)))
+    yield from (world_case(world, args) for world in WORLDS if world.name in wanted)
+
+
+def references(relumine: Relumine, case: Case, args: argparse.Namespace) -> list[np.ndarray]:
     """Two independent pictures."""
-    halves, spp = [], world.noisy * args.reference_spp
+    halves, spp = [], case.noisy * args.reference_spp
+    width, height = args.size
+    size = f"{width}" if width == height else f"{width}x{height}"
     for seed in REFERENCE_SEEDS:
-        file = args.out / f"{world.name}-{args.size}-{spp}-{seed}.pfm"
+        file = args.out / f"{case.name}-{size}-{spp}-{seed}.pfm"
         if not file.exists():
             print(f"{file.name}: rendering", file=sys.stderr, flush=True)
             options: Options = {"method": "path", "spp": spp}
-            pictures.write_pfm(file, relumine.render(view, options, seed, args.threads).picture)
+            pictures.write_pfm(file, relumine.render(case.view, options, seed, args.threads).picture)
         halves.append(pictures.read_pfm(file))
     return halves
 
@@ -137,29 +175,27 @@ def write_pictures(folder: pathlib.Path, name: str, renders: list[np.ndarray], h
     pictures.write_png(folder / f"{name}.png", page)
 
 
+def measure(relumine: Relumine, case: Case, args: argparse.Namespace) -> None:
+    halves = references(relumine, case, args)
+    methods = args.method.split("|")
+    for method in methods:
+        options = options_of(method) | {"spp": args.spp}
+        runs = [relumine.render(case.view, options, seed, args.threads) for seed in SEEDS]
+        renders = [run.picture for run in runs]
+        cpu = sum(run.stats["cpu_seconds"] for run in runs) / len(runs)
+        name = case.name if len(methods) == 1 else f"{case.name}: `{method.strip()}`"
+        print(row(name, renders, halves, args.block, cpu), flush=True)
+        if args.pictures:
+            write_pictures(args.out, case.name, renders, halves)
+
+
 def main() -> None:
     args = arguments()
     args.out.mkdir(parents=True, exist_ok=True)
-    sky = args.out / "sky.pfm"
-    pictures.write_pfm(sky, environments.smooth_sky(environments.directions(512, 256)))
     relumine = Relumine(args.relumine, args.out)
-    wanted = args.worlds.split(",")
-    unknown = set(wanted) - {world.name for world in WORLDS}
-    if unknown:
-        raise SystemExit(f"--worlds: unknown {', '.join(sorted(unknown))}")
-    options = options_of(args.method) | {"spp": args.spp}
     print(HEADER)
-    for world in WORLDS:
-        if world.name not in wanted:
-            continue
-        view = view_of(world, sky, args)
-        halves = references(relumine, view, world, args)
-        runs = [relumine.render(view, options, seed, args.threads) for seed in SEEDS]
-        renders = [run.picture for run in runs]
-        cpu = sum(run.stats["cpu_seconds"] for run in runs) / len(runs)
-        print(row(world.name, renders, halves, args.block, cpu), flush=True)
-        if args.pictures:
-            write_pictures(args.out, world.name, renders, halves)
+    for case in cases(args):
+        measure(relumine, case, args)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,8 @@ constexpr float link_unit = 1024;
 constexpr std::size_t run = 1024;      // elements of a piece of work
 constexpr double least_change = 1e-4;  // of what is still to come, relative to all
 constexpr std::size_t most_iterations = 1000;
+constexpr std::size_t most_at_once = 200;
+constexpr std::size_t patience = 24;  // reflections, one after the other, before the rest is found at once
 
 /// What arrived after the last reflections, one after the other.
 class Arrivals {
@@ -55,13 +57,6 @@ void add(std::span<const Spectrum> more, std::vector<Spectrum>& sum) {
     for (std::size_t i = 0; i < more.size(); ++i) sum[i] += more[i];
 }
 
-double total(std::span<const Spectrum> values) {
-    double sum = 0;
-    for (const Spectrum& s : values)
-        sum += std::abs(double{s.r}) + std::abs(double{s.g}) + std::abs(double{s.b});
-    return sum;
-}
-
 /// What further reflections add, if light goes on falling as from one stretch of so many to the next.
 double still_to_come(std::span<const double> totals, std::size_t stretch) {
     if (totals.size() < 2 * stretch) return infinity;
@@ -71,6 +66,20 @@ double still_to_come(std::span<const double> totals, std::size_t stretch) {
     const double now = sum(totals.last(stretch)), before = sum(totals.last(2 * stretch).first(stretch));
     const double ratio = before > 0 ? std::min(now / before, 0.999) : 0;
     return now * ratio / (1 - ratio);
+}
+
+/// Where hardly any light arrives the rest may err towards less than none.
+void add_all(std::span<const Spectrum> rest, LightByElement& sum) {
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        const Spectrum s = sum[i] + rest[i];
+        sum[i] = {std::max(s.r, 0.0f), std::max(s.g, 0.0f), std::max(s.b, 0.0f)};
+    }
+}
+
+/// Of what reflections, as they go on, are still to bring, relative to what the last one has brought.
+double least_left(const Reflections& done, std::span<const Spectrum> irradiance) {
+    const double ratio = done.totals.back() / done.totals[done.totals.size() - 2];
+    return least_change * total(irradiance) * (1 - std::min(ratio, 0.999));
 }
 
 }  // namespace
@@ -116,7 +125,13 @@ Reflections iterate(const FieldLinks& links, const ElementLight& light, float sh
     // Without a limit all light arrives, however many reflections lobes take.
     const bool limited = bounces < most_iterations;
     const std::size_t count = light.straight.size(), delay = limited ? most_lobes(links) : 0;
-    std::vector<Spectrum> arriving = light.straight;
+    const auto reflect = [&](const Arrivals& from, LightByElement& to) {
+        parallel_for(threads, (count + run - 1) / run, [&](std::size_t piece) {
+            for (std::size_t e = piece * run; e < std::min((piece + 1) * run, count); ++e)
+                to[e] = gathered(links, e, from) * share;
+        });
+    };
+    LightByElement arriving = light.straight;
     if (!limited) add(light.reflected, arriving);
     irradiance = arriving;
     Reflections done{{total(arriving)}, bounces};
@@ -124,13 +139,23 @@ Reflections iterate(const FieldLinks& links, const ElementLight& light, float sh
     arrivals.add(arriving);
     while (done.computed() < std::min<std::size_t>(bounces, most_iterations)) {
         // Only the last bounce's light travels on: sums of ever smaller terms.
-        parallel_for(threads, (count + run - 1) / run, [&](std::size_t piece) {
-            for (std::size_t e = piece * run; e < std::min((piece + 1) * run, count); ++e)
-                arriving[e] = gathered(links, e, arrivals) * share;
-        });
+        reflect(arrivals, arriving);
         if (limited && done.computed() == 0) add(light.reflected, arriving);
-        add(arriving, irradiance);
         done.totals.push_back(total(arriving));
+        if (!limited && done.computed() == patience) {
+            const AllReflections rest =
+                all_reflections(arriving, least_left(done, irradiance), most_at_once,
+                                [&](std::span<const Spectrum> from, LightByElement& to) {
+                                    arrivals.add(from);
+                                    reflect(arrivals, to);
+                                });
+            done.at_once = rest.asked;
+            if (rest.converged) {
+                add_all(rest.light, irradiance);
+                break;
+            }
+        }
+        add(arriving, irradiance);
         arrivals.add(arriving);
         if (still_to_come(done.totals, delay + 1) <= least_change * total(irradiance)) break;
     }

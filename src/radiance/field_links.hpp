@@ -8,6 +8,7 @@
 
 #include "base/frame.hpp"
 #include "radiance/field_cells.hpp"
+#include "radiance/field_solver.hpp"
 
 namespace relumine {
 
@@ -50,8 +51,9 @@ struct ElementLight {
 struct Reflections {
     std::vector<double> totals;  // of what arrives after none, one, … of them, over all elements
     std::size_t limit = 0;
+    std::size_t at_once = 0;  // further ones, whose sum alone is known
 
-    [[nodiscard]] std::size_t computed() const { return totals.size() - 1; }
+    [[nodiscard]] std::size_t computed() const { return totals.size() - 1 + at_once; }
     /// Of all the irradiance, what a limit that is lower by so many would leave.
     [[nodiscard]] float share_without(std::size_t reflections) const;
 };

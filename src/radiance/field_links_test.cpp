@@ -33,6 +33,33 @@ TEST(FieldLinks, ReflectionsAddUpToTheGeometricSeries) {  // E = 1 / (1 − ρ),
     }
 }
 
+/// Light that is reflected hundreds of times is not followed so often: a chain of elements, each of which
+/// sees the next ones, lit at one end. Jacobi iterations to the same sum take 400.
+TEST(FieldLinks, ManyReflectionsAreFoundAtOnce) {
+    constexpr ElementId count = 60;
+    FieldLinks links;
+    for (ElementId e = 0; e < count; ++e) {
+        for (std::uint16_t r = 0; r < rays; ++r) {
+            const ElementId to = r % 2 == 0 ? std::min(e + 1, count - 1) : std::max(e, 1u) - 1;
+            links.links.push_back(make_link(to, r, r, {0.98f, 0.9f, 0.5f}, 0));
+        }
+        links.end_element();
+    }
+    std::vector<Spectrum> light(count), irradiance, reflected(count);
+    light[0] = Spectrum{1};
+    const Reflections done = iterate(links, {light, {}}, 1.0f / rays, 0xffffffffu, 1, irradiance);
+    EXPECT_LT(done.computed(), 100u);
+    for (ElementId e = 0; e < count; ++e)
+        for (const Link& l : links.of(e)) reflected[e] += l.value() * irradiance[l.to] * (1.0f / rays);
+    double off = 0, all = 0;
+    for (ElementId e = 0; e < count; ++e) {
+        off += luminance(light[e] + reflected[e] - irradiance[e]);
+        all += luminance(irradiance[e]);
+        EXPECT_GE(irradiance[e].b, 0);
+    }
+    EXPECT_NEAR(off / all, 0, 1e-5);  // of one reflection; some fifty times that of all
+}
+
 TEST(FieldLinks, AFewReflectionsAreItsPartialSum) {
     const FieldLinks links = facing(Spectrum{0.5f});
     const std::vector<Spectrum> light{Spectrum{1}, Spectrum{0}};

@@ -12,8 +12,8 @@ namespace {
 /// Height over the surface of rays that explore it, of the cell's size.
 constexpr float lift = 0.05f;
 
-/// With so many points that rays have met, no others are looked for.
-constexpr std::size_t enough_met = 8;
+/// With so many points no others are looked for.
+constexpr std::size_t enough = 8;
 
 /// Where straight down from `above` (not farther than `depth`) the element's surface lies.
 std::optional<SurfacePoint> project(const Transport& t, const FieldElement& e, Vec3 above, float depth,
@@ -48,23 +48,22 @@ std::optional<SurfacePoint> surface_near(const Transport& t, const FieldCells& c
     return p;
 }
 
-/// Points spread over what an element's cell holds of its surface, as far as the element sees them.
-std::vector<StartPoint> explored_points(const Transport& t, const FieldCells& cells, ElementId id,
-                                        std::uint64_t seed, RayCounts& rays) {
+/// Adds points spread over what an element's cell holds of its surface, as far as the element sees them,
+/// until there are enough.
+void explore(const Transport& t, const FieldCells& cells, ElementId id, std::uint64_t seed,
+             std::vector<StartPoint>& points, RayCounts& rays) {
     const std::uint32_t tries = cells.elements()[id].coarse ? 32 : 16;
     constexpr float reach = 1.42f;  // of a square that contains the cell's section with any plane
     const FieldElement& e = cells.elements()[id];
     const Frame frame = frame_around(e.normal);
     const Vec3 middle = cells.middle_of(e);
-    std::vector<StartPoint> points;
-    for (std::uint32_t i = 0; i < tries; ++i) {
+    for (std::uint32_t i = 0; i < tries && points.size() < enough; ++i) {
         const Point2 u =
             SampleStream{hash(seed, id, 0x706f696e7473), i, tries, PointSet::sobol}.next2(Dim::pixel);
         const Vec3 target = middle + (frame.s * (u.x - 0.5f) + frame.t * (u.y - 0.5f)) * (reach * e.size);
         if (const auto p = surface_near(t, cells, e, target, rays))
             points.push_back({p->position, p->geometric_normal, p->offset});
     }
-    return points;
 }
 
 }  // namespace
@@ -106,9 +105,7 @@ void center(const Transport& t, const FieldCells& cells, FieldElement& e, RayCou
 std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id,
                                      std::span<const StartPoint> met, std::uint64_t seed, RayCounts& rays) {
     std::vector<StartPoint> points(met.begin(), met.end());
-    if (points.size() >= enough_met) return points;
-    const std::vector<StartPoint> more = explored_points(t, cells, id, seed, rays);
-    points.insert(points.end(), more.begin(), more.end());
+    explore(t, cells, id, seed, points, rays);
     if (points.empty()) {
         const FieldElement& e = cells.elements()[id];
         points.push_back({e.position, e.normal, e.offset});

@@ -157,7 +157,9 @@ void check_cameras(const SceneData& scene) {
     }
 }
 
-bool has_light(const SceneData& scene) {
+}  // namespace
+
+bool emits_light(const SceneData& scene) {
     if (!scene.point_lights.empty() || !scene.spot_lights.empty() || !scene.directional_lights.empty())
         return true;
     if (scene.environment) return true;
@@ -165,8 +167,6 @@ bool has_light(const SceneData& scene) {
         if (!is_black(scene.materials[index(mesh.material)].emission)) return true;
     return false;
 }
-
-}  // namespace
 
 SceneData finish_scene(SceneData scene) {
     check_instances(scene);
@@ -179,7 +179,7 @@ SceneData finish_scene(SceneData scene) {
     finish_meshes(scene);
     drop_unused_meshes(scene);
     compute_bounds(scene);
-    if (!has_light(scene)) scene.warn("nothing in this scene emits light; --environment FILE adds some");
+    if (!emits_light(scene)) scene.warn("nothing in this scene emits light; --environment FILE adds some");
     if (scene.cameras.empty()) scene.cameras.push_back(framing_camera(scene.bounds));
     return scene;
 }

@@ -10,6 +10,9 @@ namespace relumine {
 /// meshes that have one instance to world space, and computes bounds. Throws SceneError.
 [[nodiscard]] SceneData finish_scene(SceneData scene);
 
+/// Whether anything is there that may emit.
+[[nodiscard]] bool emits_light(const SceneData& scene);
+
 /// A camera that shows all of `bounds` from the front, above and a little from the right.
 [[nodiscard]] Camera framing_camera(const Bounds3& bounds);
 
