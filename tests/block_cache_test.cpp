@@ -407,6 +407,35 @@ TEST(CacheOfNearMirrors, IsAsCleanAsWhatTheyShow) {
     EXPECT_NEAR(error / sum, 0, 0.01);
 }
 
+/// A ball of glass (GGX α .01): a thin shell, and a body before a lamp.
+TEST(CacheOfNearlySmoothGlass, GoesOnAsFromSmoothGlass) {
+    MaterialDescription glass, lamp;
+    glass.transmission = 1;
+    glass.roughness = 0.1f;
+    glass.base_color = {1, 1, 1};
+    lamp.emission = {9, 9, 9};
+    lamp.base_color = {0, 0, 0};
+    for (const bool lit : {false, true}) {
+        glass.solid = lit;
+        SceneBuilder builder;
+        const Sphere ball = sphere(32);
+        MeshDescription body;
+        body.positions = body.normals = ball.positions;
+        body.triangles = ball.triangles;
+        body.material = builder.add_material(glass);
+        builder.add_instance(builder.add_mesh(body));
+        if (lit) add_quad(builder, {{{-3, -3, -4}, {3, -3, -4}, {3, 3, -4}, {-3, 3, -4}}}, lamp);
+        CameraDescription camera;
+        camera.world_from_camera = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 4, 1};
+        builder.add_camera(camera);
+        const Scene scene = under_a_sky(std::move(builder));
+        const std::vector<double> expected = block_means(picture_of(scene, "path", 256), 8),
+                                  found = block_means(picture_of(scene, "cache", 64), 8);
+        for (std::size_t i = 0; i < found.size(); ++i)
+            EXPECT_NEAR(found[i] / expected[i], 1, 0.05) << lit << " " << i;
+    }
+}
+
 /// A lamp in a ball of metal (GGX α .04) and nothing else: what is dark beside its reflection stays dark.
 /// Filtered, the dark was 8.2 times as bright and the reflection lacked 15 %; its noise is some 4 %.
 TEST(CacheOfGlossyLobes, ShowsLampsWithoutAHalo) {
