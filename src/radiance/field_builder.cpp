@@ -232,11 +232,13 @@ class FieldBuilder {
             const ElementId id = to[i] == no_element && may_make && !full()
                                      ? cells_->find_or_make_coarse(l.position, l.normal, l.offset)
                                      : to[i];
-            if (id != no_element)
-                links.links.push_back(make_link(id, l.ray, pack_direction(frame.to_local({l.direction})),
-                                                l.throughput * times, l.lobes));
-            else
+            if (id == no_element) {
                 ++unresolved_;
+                continue;
+            }
+            if (id >= surveyed_) met_.offer(id, {l.position, l.normal, l.offset});
+            links.links.push_back(make_link(id, l.ray, pack_direction(frame.to_local({l.direction})),
+                                            l.throughput * times, l.lobes));
         }
     }
 
@@ -372,7 +374,7 @@ class FieldBuilder {
     float common_find_ = infinity;
     NoisyLight noisy_;
     double light_ = 0;     // of surveyed elements: sum of irradiance that samples of the lights find
-    PointReservoirs met_;  // where rays from the seeds have met elements; of surveyed ones, where rays start
+    PointReservoirs met_;  // where rays have met elements; of surveyed ones, where rays start
     std::vector<StartPoint> edges_;  // of elements since the last octave that edges of shadows cross
 };
 

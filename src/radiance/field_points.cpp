@@ -105,7 +105,8 @@ void center(const Transport& t, const FieldCells& cells, FieldElement& e, RayCou
 std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id,
                                      std::span<const StartPoint> met, std::uint64_t seed, RayCounts& rays) {
     std::vector<StartPoint> points(met.begin(), met.end());
-    explore(t, cells, id, seed, points, rays);
+    const bool coarse = cells.elements()[id].coarse;
+    if (points.empty() || !coarse) explore(t, cells, id, seed, points, rays);
     if (points.empty()) {
         const FieldElement& e = cells.elements()[id];
         points.push_back({e.position, e.normal, e.offset});

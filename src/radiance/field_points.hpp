@@ -40,7 +40,8 @@ class PointReservoirs {
 void center(const Transport& t, const FieldCells& cells, FieldElement& element, RayCounts& rays);
 
 /// The points that were met; where they are few also others, spread over what the element's cell holds of its
-/// surface; at least one.
+/// surface; at least one. Of coarse elements the former alone, if there are any: a coarse cell may hold a
+/// floor on both sides of a wall, and rays have met it on the side that asks.
 [[nodiscard]] std::vector<StartPoint> start_points(const Transport& t, const FieldCells& cells, ElementId id,
                                                    std::span<const StartPoint> met, std::uint64_t seed,
                                                    RayCounts& rays);
