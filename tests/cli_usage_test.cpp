@@ -189,7 +189,7 @@ TEST(Cli, RefusesSettingsOutOfRange) {
         {{"--residual-rays", "1048577"}, "found 1048577"},
         {{"--residual-rays", "1.5"}, "--residual-rays: expected a whole number"},
         {{"--filter-residual", "maybe"}, "--filter-residual: expected on or off, found \"maybe\""},
-        {{"--without", "blend"}, "did you mean \"blending\"?"},
+        {{"--without", "blendin"}, "did you mean \"blending\"?"},
         {{"--without", "splits,splits"}, "without: expected each part once, found \"splits\" twice"},
         {{"--light-samples", "-2", "--method", "cache"}, "found -2"},
         {{"--method", "cach"}, "did you mean \"cache\"?"},
