@@ -189,9 +189,9 @@ class BlockCache final : public Integrator {
             doubt.add(found, lobes, throughput, radiance.total(), sample.albedo, sample.deviation);
         // What sharp lobes show is as fine as pixels, lamps in glossy ones too: no filter.
         add(lobes, throughput, radiance);
-        radiance.direct += throughput * (found.residual.mirrored + found.light.mirrored);
+        radiance.direct += throughput * (found.residual.bright.mirrored + found.light.mirrored);
         if (plan_.filters) {
-            residual.bright += throughput * (found.residual.bright + found.light.radiance);
+            residual.bright += throughput * (found.residual.bright.radiance + found.light.radiance);
             residual.direct += throughput * found.residual.dim.direct;
             residual.indirect += throughput * found.dim_indirect();
             residual.albedo += throughput * sample.albedo;
@@ -205,15 +205,15 @@ class BlockCache final : public Integrator {
 
     static void add(const SampledRadiance& found, Spectrum throughput, SplitRadiance& radiance) {
         radiance.direct +=
-            throughput * (found.residual.dim.direct + found.residual.bright + found.light.radiance);
+            throughput * (found.residual.dim.direct + found.residual.bright.radiance + found.light.radiance);
         radiance.indirect += throughput * found.dim_indirect();
     }
 
     /// What is not finite must not spread in the filter.
     static SampledRadiance finite_or_nothing(const SampledRadiance& found, RayCounts& rays) {
         const FoundResidual& r = found.residual;
-        if (is_finite(r.dim.direct + found.dim_indirect() + r.bright + r.mirrored + found.light.radiance
-                      + found.light.mirrored))
+        if (is_finite(r.dim.direct + found.dim_indirect() + r.bright.radiance + r.bright.mirrored
+                      + found.light.radiance + found.light.mirrored))
             return found;
         ++rays.non_finite;
         return {};

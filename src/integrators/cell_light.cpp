@@ -90,7 +90,7 @@ class CellLight {
         for (LitSample& sample : cell_.samples) sample.done = !has_residual(sample);
     }
 
-    static bool has_residual(const LitSample& sample) { return sample.sampled.residual.rays > 0; }
+    static bool has_residual(const LitSample& sample) { return sample.sampled.residual.bright.rays > 0; }
 
     [[nodiscard]] std::vector<PilotResidual> residual_pilots() const {
         std::vector<PilotResidual> pilots(cell_.pilots.size());
@@ -168,7 +168,7 @@ class CellLight {
                     }
                     const bool stands_alone = blend.smallest_block() < quad_shares;
                     if (in_second_series() && stands_alone && !(more(x, y) > 0)) {
-                        first.done = true;
+                        leave_own(x, y, first);
                         continue;
                     }
                     integrate(first, blend);
@@ -210,6 +210,13 @@ class CellLight {
         light_those(x, y, 1, [&](const LitSample& sample) {
             return &sample == &first || shares_integral(first, sample, plan_.exact);
         });
+    }
+
+    /// As those would be lit, but for light: those behind must meet the same integrals again.
+    void leave_own(int x, int y, const LitSample& first) {
+        for (LitSample& sample : cell_.at(x, y))
+            if (waits(sample) && (&sample == &first || shares_integral(first, sample, plan_.exact)))
+                sample.done = true;
     }
 
     /// Lights the samples of a pixel that may share the integral of one of another pixel.

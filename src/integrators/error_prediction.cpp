@@ -32,12 +32,12 @@ void DoubtSum::add(const SampledRadiance& found, const SampledRadiance& lobes, S
     residual_.add(found.residual.noise, factor);
     cone_.add(found.cones.noise, factor);
     light_.add(found.light.noise, factor);
-    hit_.add(found.residual.bright_noise, factor);
+    hit_.add(found.residual.bright.noise, factor);
     lobe_.add(lobes.residual.noise, factor);
     mirrored_light_.add(found.light.mirrored_noise, factor);
     mirrored_light_.add(lobes.light.noise, factor);
-    mirrored_hit_.add(found.residual.mirrored_noise, factor);
-    mirrored_hit_.add(lobes.residual.bright_noise, factor);
+    mirrored_hit_.add(found.residual.bright.mirrored_noise, factor);
+    mirrored_hit_.add(lobes.residual.bright.noise, factor);
     albedo_ += luminance(throughput * albedo);
     deviation_ += factor * deviation;
     samples_ += 1;

@@ -24,8 +24,8 @@ void PilotLight::add(const FoundLight& found, float throughput) {
 void PilotResidual::add(const FoundResidual& found, float expected_of_one, const ShadingPoint& point) {
     const float throughput = luminance(point.path.throughput);
     samples += 1;
-    rays += found.rays;
-    noise.add(together(found.noise, found.bright_noise), throughput);
+    rays += found.bright.rays;
+    noise.add(together(found.noise, found.bright.noise), throughput);
     deviation += throughput * expected_of_one;
     if (!seen) seen = point.vertex.point.material;
 }

@@ -97,7 +97,7 @@ TEST(RayDemand, AddsLightSamplesWhereTheyScatter) {
 /// Of one camera sample with four rays, of which one finds `found` and the others nothing; `expected` of one.
 PilotResidual residual_pilot(const Material& seen, float found, float expected) {
     FoundResidual residual;
-    residual.rays = residual.noise.rays = 4;
+    residual.bright.rays = residual.noise.rays = 4;
     residual.noise.count(false, found / 4);
     ShadingPoint point;
     point.path.throughput = Spectrum{1};

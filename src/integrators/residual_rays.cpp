@@ -101,51 +101,6 @@ void for_each_ray(float rays, const SampleStream& stream, std::uint64_t purpose,
 
 }  // namespace
 
-namespace {
-
-/// Makes a mean of two.
-class Joining {
-  public:
-    Joining(float rays, float other_rays)
-        : here_(rays / (rays + other_rays)), there_(other_rays / (rays + other_rays)) {}
-
-    void operator()(Spectrum& a, Spectrum b) const { a = a * here_ + b * there_; }
-    void operator()(RayNoise& a, const RayNoise& b) const {
-        RayNoise sum;
-        sum.add(a, here_);
-        sum.add(b, there_);
-        a = sum;
-    }
-
-  private:
-    float here_, there_;
-};
-
-}  // namespace
-
-void FoundLight::join(const FoundLight& other) {
-    if (!(other.rays > 0)) return;
-    const Joining join(rays, other.rays);
-    join(radiance, other.radiance);
-    join(mirrored, other.mirrored);
-    join(noise, other.noise);
-    join(mirrored_noise, other.mirrored_noise);
-    rays += other.rays;
-}
-
-void FoundResidual::join(const FoundResidual& other) {
-    if (!(other.rays > 0)) return;
-    const Joining join(rays, other.rays);
-    join(dim.direct, other.dim.direct);
-    join(dim.indirect, other.dim.indirect);
-    join(bright, other.bright);
-    join(mirrored, other.mirrored);
-    join(noise, other.noise);
-    join(bright_noise, other.bright_noise);
-    join(mirrored_noise, other.mirrored_noise);
-    rays += other.rays;
-}
-
 /// The bright surfaces as the point sees them, and how light samples are divided between them and the lights.
 void ResidualEstimator::see_cones(const ShadingPoint& x) {
     const SurfacePoint& p = x.vertex.point;
@@ -161,12 +116,12 @@ void ResidualEstimator::see_cones(const ShadingPoint& x) {
 void ResidualEstimator::add(const IntegratedPoint& point, RaySeries series, FoundResidual& sum) {
     see_cones(point.x);
     if (!(point.rays > 0)) return;
-    sum.rays = point.rays;
+    sum.bright.rays = point.rays;
     const Mirroring mirroring(point.x.vertex);
     for_each_ray(point.rays, point.stream,
                  series == RaySeries::first ? residual_purpose : second_residual_purpose, sum.noise,
                  [&](const SampleStream& stream) { add_residual(point, mirroring, stream, sum); });
-    sum.bright_noise.rays = sum.mirrored_noise.rays = sum.noise.rays;
+    sum.bright.noise.rays = sum.bright.mirrored_noise.rays = sum.noise.rays;
 }
 
 void ResidualEstimator::add_cones(const ShadingPoint& x, const SampleStream& stream, FoundCones& sum) {
@@ -300,10 +255,10 @@ void ResidualEstimator::collect(const ResidualRay& drawn, const Ray& ray, const 
         * (bright.share * mis_weight(drawn.usual_bsdf_density, drawn.light_budget * bright.pdf)
            / drawn.bsdf_density);
     const Spectrum mirrored = shining * drawn.mirrors, rest = shining - mirrored;
-    sum.bright += rest;
-    sum.mirrored += mirrored;
-    sum.bright_noise.count(drawn.second_half, luminance(rest));
-    sum.mirrored_noise.count(drawn.second_half, luminance(mirrored));
+    sum.bright.radiance += rest;
+    sum.bright.mirrored += mirrored;
+    sum.bright.noise.count(drawn.second_half, luminance(rest));
+    sum.bright.mirrored_noise.count(drawn.second_half, luminance(mirrored));
 }
 
 void ResidualEstimator::add_light_sample(const ShadingPoint& x, const Mirroring& mirroring,
@@ -338,7 +293,7 @@ void ResidualEstimator::add_lobes(const LobePoint& point, SampledRadiance& sum) 
     FoundResidual& met = sum.residual;
     for_each_ray(point.rays, point.stream, lobe_purpose, met.noise,
                  [&](const SampleStream& stream) { add_lobe_ray(point, light_rays, stream, met); });
-    met.bright_noise.rays = met.noise.rays;
+    met.bright.noise.rays = met.noise.rays;
     if (!(light_rays > 0)) return;
     for_each_ray(light_rays, point.stream, lobe_light_purpose, sum.light.noise,
                  [&](const SampleStream& stream) { add_lobe_light(point, stream, sum.light); });

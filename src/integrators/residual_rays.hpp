@@ -4,7 +4,7 @@
 
 #include "blocks/bright_split.hpp"
 #include "blocks/residual_distribution.hpp"
-#include "integrators/ray_noise.hpp"
+#include "integrators/sampled_radiance.hpp"
 #include "integrators/shading_point.hpp"
 #include "radiance/incident.hpp"
 #include "shading/sharp_lobes.hpp"
@@ -16,43 +16,8 @@ struct RayBudget {
     float residual = 0, light = 0;
 };
 
-/// What a series of light samples has found.
-struct FoundLight {
-    Spectrum radiance, mirrored;  // reflected by all but glossy lobes, and by these
-    RayNoise noise, mirrored_noise;
-    float rays = 0;  // that the camera sample got on average
-
-    /// Makes one of two series, weighed by their rays, which must not depend on what they have found.
-    void join(const FoundLight& other);
-};
-/// What a series of residual rays has found.
-struct FoundResidual {
-    MapRadiance dim;            // true radiance less what the maps hold
-    Spectrum bright, mirrored;  // light that was met, as in FoundLight
-    RayNoise noise, bright_noise, mirrored_noise;
-    float rays = 0;  // that the camera sample got on average
-
-    /// As that of FoundLight.
-    void join(const FoundResidual& other);
-};
-
-/// What rays towards bright surfaces have found.
-struct FoundCones {
-    Spectrum indirect;
-    RayNoise noise;
-};
-
 /// Successive series of a point draw other samples.
 enum class RaySeries : std::uint8_t { first, second };
-
-/// What is added to MapIntegral::reflected().
-struct SampledRadiance {
-    FoundResidual residual;
-    FoundCones cones;
-    FoundLight light;
-
-    [[nodiscard]] Spectrum dim_indirect() const { return residual.dim.indirect + cones.indirect; }
-};
 
 /// What residual rays are drawn and judged with.
 struct ResidualSettings {
