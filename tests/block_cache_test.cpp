@@ -135,6 +135,23 @@ double difference(const Image& a, const Image& b) {
     return sum / all;
 }
 
+/// Numbers of rays that follow from what other pixels' rays have found leave the mean as it is: a glossy room
+/// where a second series is asked for. Joined by anything else than rays, series show; so does 1 %.
+TEST(CacheOfGlossyRooms, RaysByDemandAreUnbiased) {
+    const Case& room = cases[0];
+    RenderSettings by_demand = unbiased(room);
+    by_demand.residual_rays = by_demand.light_samples = -1;
+    by_demand.error = 0.05f;
+    const Scene scene = project_scene(room.scene);
+    const Estimate expected = whole(render_seeds(scene, gathered(room), 10)),
+                   mean = whole(render_seeds(scene, by_demand, 48));
+    EXPECT_GT(welch_p(mean, expected), false_positive_rate) << mean.mean << " " << expected.mean;
+    for (const double scale : {0.99, 1.01})
+        EXPECT_LT(welch_p({scale * mean.mean, scale * mean.standard_error, mean.count}, expected),
+                  false_positive_rate)
+            << scale;
+}
+
 TEST_P(CacheScenes, ComesCloserToGatherTheLessErrorIsAllowed) {
     RenderSettings reference = gathered(scene_case), settings = settings_for(scene_case, "cache");
     for (RenderSettings* s : {&reference, &settings}) {
